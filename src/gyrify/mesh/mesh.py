@@ -1,0 +1,80 @@
+"""The mesh: a frozen record of points, simplices and the index sets the physics needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+WHITE: Final = 0
+GREY: Final = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Simplices of one dimension with their tissue and boundaries.
+
+    Attributes
+    ----------
+    points : (n_points, n_dim) float array
+        Reference coordinates X [mm].
+    cells : (n_cells, n_dim + 1) int array
+        Point indices of each simplex, positively oriented.
+    region : (n_cells,) int8 array
+        `WHITE` (0) or `GREY` (1).
+    contour : (n_contour,) int array
+        Points of the free outer contour in order, counter-clockwise when it is closed.
+    interface : (n_interface,) int array
+        Points of the grey-white interface in the same order and direction as the contour.
+    clamped : (n_clamped,) int array
+        Points whose displacement is zero.
+    across : (n_cells, n_dim) float array
+        Unit reference direction N across the layers, pointing outwards.
+    is_closed : bool
+        Whether the contour is a closed loop (a ring) or runs along one period (a strip).
+    period : float or None
+        Length of the period in x [mm] of a strip, None for a ring.
+    """
+
+    points: FloatArray
+    cells: IntArray
+    region: NDArray[np.int8]
+    contour: IntArray
+    interface: IntArray
+    clamped: IntArray
+    across: FloatArray
+    is_closed: bool = True
+    period: float | None = None
+
+    def __post_init__(self) -> None:
+        for array in (self.points, self.cells, self.region, self.contour, self.interface, self.clamped, self.across):
+            array.flags.writeable = False
+
+    @property
+    def n_points(self) -> int:
+        """Number of points."""
+        return int(self.points.shape[0])
+
+    @property
+    def n_dim(self) -> int:
+        """Dimension of the space the mesh lies in."""
+        return int(self.points.shape[1])
+
+    @property
+    def n_cells(self) -> int:
+        """Number of cells."""
+        return int(self.cells.shape[0])
+
+    @property
+    def cell_points(self) -> FloatArray:
+        """(n_cells, n_nodes, n_dim) reference coordinates of each cell, unwrapped across the period."""
+        corners = self.points[self.cells]
+        if self.period is not None:
+            offset = corners[:, :, :1] - corners[:, :1, :1]
+            corners[:, :, :1] -= self.period * np.round(offset / self.period)
+        return corners
