@@ -1,0 +1,193 @@
+"""The exact axisymmetric state of a growing circular annulus.
+
+The inner circle is clamped, the outer one free. The state r(R) minimises 2 pi int psi(r', r/R, F_33) R dR; it
+is computed with high-order elements, to about 1e-10.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gyrify.errors import ConfigError, SolveError
+from gyrify.theory.material import Response
+from gyrify.theory.parameters import Annulus
+from gyrify.theory.spectral import Line
+
+__all__ = ["Annulus", "BaseState", "base_state"]
+
+FloatArray = NDArray[np.float64]
+
+# Largest growth strain of the cortex between two solves.
+_LARGEST_STEP = 0.15
+_MAX_NEWTON = 50
+
+
+@dataclass(frozen=True, eq=False)
+class BaseState:
+    """The axisymmetric equilibrium of an annulus at one growth time.
+
+    Attributes
+    ----------
+    annulus : Annulus
+        The parameters.
+    growth_time : float
+        t [time].
+    line : Line
+        The elements across the wall.
+    nodal_radius : (n_nodes,) float array
+        Deformed radius r of the nodes [mm].
+    axial_stretch : float
+        F_33 [-].
+    residual : float
+        Largest out-of-balance nodal force / (E_G x wall) [-].
+    """
+
+    annulus: Annulus
+    growth_time: float
+    line: Line
+    nodal_radius: FloatArray
+    axial_stretch: float
+    residual: float
+
+    def radius(self, reference_radius: ArrayLike) -> FloatArray:
+        """Deformed radius r [mm] of reference radii R [mm], shaped as given."""
+        places = np.asarray(reference_radius, dtype=np.float64)
+        return (self.line.at(places.ravel())[0] @ self.nodal_radius).reshape(places.shape)
+
+    def stretches(self, reference_radius: ArrayLike) -> FloatArray:
+        """Principal stretches (r', r/R, F_33) [-] as (n, 3) at reference radii (n,) [mm]."""
+        places = np.atleast_1d(np.asarray(reference_radius, dtype=np.float64))
+        values, slopes = self.line.at(places)
+        along = values @ self.nodal_radius / places
+        return np.stack([slopes @ self.nodal_radius, along, np.full_like(along, self.axial_stretch)], axis=1)
+
+    def response(self, reference_radius: ArrayLike) -> Response:
+        """Energy, stress and tangent (`Response`) at reference radii (n,) [mm]."""
+        return self.annulus.response(
+            np.atleast_1d(reference_radius), self.stretches(reference_radius), self.growth_time
+        )
+
+    @cached_property
+    def energy(self) -> float:
+        """Strain energy of the slice per depth, 2 pi int psi R dR [Pa mm^2]."""
+        line = self.line
+        return float(2.0 * np.pi * (line.weights * line.points) @ self.response(line.points).energy)
+
+
+@dataclass(frozen=True, eq=False)
+class _RadialProblem:
+    """The discrete energy of r(R) and F_33; stretches are linear in the unknowns."""
+
+    annulus: Annulus
+    line: Line
+    # (n_points, 3, n_nodes + 1): stretches at the points per unknown
+    strain: FloatArray
+    free: NDArray[np.bool_]
+
+    @classmethod
+    def build(cls, annulus: Annulus) -> _RadialProblem:
+        line = annulus.line()
+        strain = np.zeros((len(line.points), 3, len(line.nodes) + 1))
+        strain[:, 0, :-1] = line.slopes
+        strain[:, 1, :-1] = line.values / line.points[:, None]
+        strain[:, 2, -1] = 1.0
+        free = np.ones(len(line.nodes) + 1, dtype=np.bool_)
+        free[0] = False
+        free[-1] = annulus.out_of_plane == "generalised"
+        return cls(annulus, line, strain[:, :, free], free)
+
+    def solve(self, unknowns: FloatArray, growth_time: float) -> tuple[FloatArray, float]:
+        """Newton's method; raises FloatingPointError where it does not converge."""
+        area = self.line.weights * self.line.points
+        fixed = self._stretch(unknowns) - self.strain @ unknowns[self.free]
+        scale = self.annulus.young_modulus * (self.annulus.outer_radius - self.annulus.inner_radius)
+        smallest = np.inf
+        for _ in range(_MAX_NEWTON):
+            stretch = fixed + self.strain @ unknowns[self.free]
+            if np.any(stretch <= 0.0):
+                raise FloatingPointError
+            response = self.annulus.response(self.line.points, stretch, growth_time)
+            force = np.einsum("q,qi,qia->a", area, response.stress, self.strain)
+            size = float(np.max(np.abs(force)) / scale)
+            # Stop where round-off takes over, not at a guessed tolerance.
+            if size < 1e-8 and size >= 0.5 * smallest:
+                return unknowns, size
+            smallest = min(size, smallest)
+            weighted = (area[:, None, None] * response.moduli) @ self.strain
+            tangent = np.tensordot(self.strain, weighted, axes=([0, 1], [0, 1]))
+            unknowns = unknowns.copy()
+            unknowns[self.free] -= np.linalg.solve(tangent, force)
+        raise FloatingPointError
+
+    def _stretch(self, unknowns: FloatArray) -> FloatArray:
+        """Stretches (n_points, 3) of all the unknowns, fixed ones included."""
+        along = self.line.values @ unknowns[:-1] / self.line.points
+        return np.stack([self.line.slopes @ unknowns[:-1], along, np.full_like(along, unknowns[-1])], axis=1)
+
+
+def base_state(
+    annulus: Annulus, growth_time: float | None = None, guess: BaseState | None = None
+) -> BaseState:
+    """Axisymmetric equilibrium r(R) of a growing annulus.
+
+    Newton's method on d/dr 2 pi int psi(r', r/R, F_33) R dR = 0, in growth steps small enough to converge.
+
+    Parameters
+    ----------
+    annulus : Annulus
+        The parameters.
+    growth_time : float, optional
+        t [time], not negative; the annulus' duration by default.
+    guess : BaseState, optional
+        A nearby state of an annulus of the same geometry, to start from.
+
+    Returns
+    -------
+    BaseState
+        The state, in balance to round-off.
+
+    Raises
+    ------
+    ConfigError
+        If the growth time is negative or not finite.
+    SolveError
+        If no equilibrium is found.
+    """
+    time = annulus.duration if growth_time is None else float(growth_time)
+    if not 0.0 <= time < np.inf:
+        raise ConfigError(f"The growth time is {time}.", "It must be finite and not negative.")
+    problem = _RadialProblem.build(annulus)
+    if guess is not None:
+        try:
+            start = np.append(guess.nodal_radius, guess.axial_stretch)
+            return _state(problem, time, *problem.solve(start, time))
+        except (FloatingPointError, np.linalg.LinAlgError):
+            pass  # too far away: step from the start instead
+    return _stepped(problem, time)
+
+
+def _state(problem: _RadialProblem, time: float, unknowns: FloatArray, residual: float) -> BaseState:
+    return BaseState(problem.annulus, time, problem.line, unknowns[:-1], float(unknowns[-1]), residual)
+
+
+def _stepped(problem: _RadialProblem, time: float) -> BaseState:
+    """Follow the state from no growth, halving the step where Newton's method fails."""
+    unknowns, residual, done = np.append(problem.line.nodes, 1.0), 0.0, 0.0
+    step = min(1.0, _LARGEST_STEP / max(problem.annulus.growth_rate * time, 1e-12))
+    while done < 1.0:
+        target = min(1.0, done + step)
+        try:
+            unknowns, residual = problem.solve(unknowns, target * time)
+            done = target
+        except (FloatingPointError, np.linalg.LinAlgError):
+            step *= 0.5
+            if step < 1e-6:
+                raise SolveError(
+                    f"The radial state is lost at growth time {done * time:.6g}.",
+                    "Try less growth, or a larger hole.",
+                ) from None
+    return _state(problem, time, unknowns, residual)
