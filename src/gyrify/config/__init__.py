@@ -1,0 +1,39 @@
+"""Configuration: frozen, validated parameter objects that read and write TOML."""
+
+from __future__ import annotations
+
+from gyrify.config.model import Config
+from gyrify.config.numbers import parse_number
+from gyrify.config.preset_files import PresetAbout, preset_about, preset_names
+from gyrify.config.sections import (
+    Contact,
+    Dissipation,
+    Geometry,
+    Growth,
+    Limits,
+    Material,
+    MeshSettings,
+    Metrics,
+    Output,
+    Solver,
+    Stability,
+)
+
+__all__ = [
+    "Config",
+    "Contact",
+    "Dissipation",
+    "Geometry",
+    "Growth",
+    "Limits",
+    "Material",
+    "MeshSettings",
+    "Metrics",
+    "Output",
+    "PresetAbout",
+    "Solver",
+    "Stability",
+    "parse_number",
+    "preset_about",
+    "preset_names",
+]

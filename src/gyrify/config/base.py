@@ -1,0 +1,81 @@
+"""What all sections share: strictness, fractions, and faults told in plain words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from gyrify.config.faults import config_error
+from gyrify.config.numbers import is_fraction, parse_number
+
+
+def setting(default: Any, doc: str, *, unit: str = "", source: str = "", **bounds: Any) -> Any:
+    """Declare a field with its default, one line of doc, unit, published source and bounds.
+
+    Parameters
+    ----------
+    default : object
+        The default value; None stands for a value taken from another field.
+    doc : str
+        One line of documentation.
+    unit : str, optional
+        The unit; empty for words and pure numbers.
+    source : str, optional
+        Where the default was published.
+    **bounds
+        `gt`, `ge`, `lt`, `le`, as pydantic names them.
+
+    Returns
+    -------
+    Any
+        A pydantic field.
+    """
+    return Field(default, description=doc, json_schema_extra={"unit": unit, "source": source}, **bounds)
+
+
+if TYPE_CHECKING:
+    _Model = BaseModel
+else:
+
+    class _PlainWords(type(BaseModel)):
+        """Makes a constructor raise ConfigError where pydantic raises ValidationError."""
+
+        def __call__(cls, *args, **values):
+            try:
+                return super().__call__(*args, **values)
+            except ValidationError as error:
+                raise config_error(cls, error.errors(include_url=False)) from None
+
+    class _Model(BaseModel, metaclass=_PlainWords):
+        pass
+
+
+class Section(_Model):
+    """A frozen group of settings; unknown keys, wrong types and non-finite numbers are refused."""
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", strict=True, allow_inf_nan=False, use_attribute_docstrings=False
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _normalise(cls, data: Any) -> Any:
+        """Turn fractions and -0.0 into plain numbers and drop None where it is the default."""
+        if not isinstance(data, dict):
+            return data
+        return {key: _normalised(value) for key, value in data.items() if not cls._is_unset(key, value)}
+
+    @classmethod
+    def _is_unset(cls, key: object, value: object) -> bool:
+        field = cls.model_fields.get(key) if isinstance(key, str) else None
+        return value is None and field is not None and field.default is None
+
+
+def _normalised(value: object) -> object:
+    if is_fraction(value):
+        try:
+            return parse_number(str(value)) + 0.0
+        except ValueError:
+            return value  # refused below, with the reason
+    return 0.0 if isinstance(value, float) and value == 0.0 else value

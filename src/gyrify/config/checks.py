@@ -1,0 +1,87 @@
+"""Conditions that tie fields to one another; each returns a sentence when it is broken."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from gyrify.config.model import Config
+
+MAX_WALL_SHARE: Final = 0.95
+MAX_CELLS: Final = 4_000_000
+MAX_GROWTH: Final = 10.0
+
+
+def faults(config: Config) -> list[str]:
+    """Return every broken condition of a configuration, in words."""
+    checks = (_layers, _white_matter, _cells, _growth, _increments, _branch)
+    return [fault for check in checks if (fault := check(config))]
+
+
+def _layers(config: Config) -> str:
+    mesh = config.mesh
+    if mesh.n_cortex_layers < mesh.n_layers:
+        return ""
+    return (
+        f"mesh.n_cortex_layers = {mesh.n_cortex_layers} is not allowed: it must be below "
+        f"mesh.n_layers = {mesh.n_layers}, which counts the white layers too. "
+        f"Try at most {mesh.n_layers - 1}, or more layers."
+    )
+
+
+def _white_matter(config: Config) -> str:
+    geometry = config.geometry
+    wall = geometry.narrowest_wall
+    if geometry.cortical_thickness < MAX_WALL_SHARE * wall:
+        return ""
+    remedy = (
+        "geometry.depth"
+        if geometry.shape == "strip"
+        else "geometry.area, or a smaller geometry.hole_fraction"
+    )
+    return (
+        f"geometry.cortical_thickness = {geometry.cortical_thickness!r} is not allowed: too little "
+        f"white matter is left, it must be below 0.95 of the narrowest wall, "
+        f"that is {MAX_WALL_SHARE * wall:.6g} [mm]. "
+        f"Try a thinner cortex or a larger {remedy}."
+    )
+
+
+def _cells(config: Config) -> str:
+    mesh = config.mesh
+    cells = 2 * mesh.n_around * mesh.n_layers * 4 ** (mesh.refine + mesh.refine_cortex)
+    if cells <= MAX_CELLS:
+        return ""
+    return (
+        f"mesh: up to {cells} cells are not allowed: at most {MAX_CELLS}. "
+        "Try a smaller mesh.n_around, mesh.n_layers, mesh.refine or mesh.refine_cortex."
+    )
+
+
+def _growth(config: Config) -> str:
+    growth = config.growth
+    if growth.rate * growth.duration <= MAX_GROWTH:
+        return ""
+    return (
+        f"growth.rate × growth.duration = {growth.rate * growth.duration:.6g} is not allowed: at most "
+        f"{MAX_GROWTH:g} (the paper has 1, a doubling of length). Try a smaller growth.rate or duration."
+    )
+
+
+def _increments(config: Config) -> str:
+    solver = config.solver
+    if solver.min_increment * solver.increments <= 1.0:
+        return ""
+    return (
+        f"solver.min_increment = {solver.min_increment!r} is not allowed: it must be at most "
+        f"1/solver.increments = {1 / solver.increments:.6g}. Try 1e-06, the default."
+    )
+
+
+def _branch(config: Config) -> str:
+    if config.stability.detect or not config.stability.follow_branch:
+        return ""
+    return (
+        "stability.follow_branch = true is not allowed with stability.detect = false: a branch must be "
+        "found before it is followed. Try stability.detect = true."
+    )

@@ -1,0 +1,139 @@
+"""Faults of a configuration: field, value, what is allowed and what to try, in one ConfigError."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Final
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from gyrify.config.numbers import is_fraction, parse_number
+from gyrify.config.words import allowed, choices, is_number, shorten, show
+from gyrify.errors import ConfigError
+
+MAX_FAULTS: Final = 10
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """Return the known word that is closest to a word, or an empty text."""
+    matches = difflib.get_close_matches(word[:64], list(known), n=1, cutoff=0.5)
+    return matches[0] if matches else ""
+
+
+def raise_faults(faults: Sequence[str]) -> None:
+    """Raise one ConfigError that lists the faults, one a line; do nothing when there are none."""
+    if faults:
+        more = len(faults) - MAX_FAULTS
+        listed = [*faults[:MAX_FAULTS], *([f"… and {more} more."] if more > 0 else [])]
+        raise ConfigError("\n".join(listed))
+
+
+def config_error(model: type[BaseModel], errors: Iterable[Mapping[str, Any]]) -> ConfigError:
+    """Turn what validation found into one error in plain words.
+
+    Parameters
+    ----------
+    model : type
+        The section or configuration that was validated.
+    errors : iterable of mapping
+        Each with ``type``, ``loc`` and ``input``, as pydantic lists them.
+
+    Returns
+    -------
+    ConfigError
+        One line for each field at fault.
+    """
+    faults: dict[str, str] = {}
+    for error in errors:
+        path = [str(part) for part in error["loc"][:2]]
+        owner, field = _locate(model, path)
+        name = ".".join(path[: 1 if owner is model else 2])
+        if name not in faults and len(faults) <= MAX_FAULTS:
+            faults[name] = _sentence(model, owner, name, field, error["input"])
+    try:
+        raise_faults(list(faults.values()))
+    except ConfigError as error:
+        return error
+    return ConfigError("The configuration is not valid.")
+
+
+def sections(model: type[BaseModel]) -> dict[str, type[BaseModel]]:
+    """Return the fields of a model that are models themselves."""
+    kinds = {name: field.annotation for name, field in model.model_fields.items()}
+    return {
+        name: kind for name, kind in kinds.items() if isinstance(kind, type) and issubclass(kind, BaseModel)
+    }
+
+
+def unknown_key(model: type[BaseModel], owner: type[BaseModel], name: str) -> str:
+    """Say that a key does not exist and which one is nearest.
+
+    Parameters
+    ----------
+    model : type
+        The whole configuration (or the section, where one is built by itself).
+    owner : type
+        The section, or the configuration, that lacks the key.
+    name : str
+        The dotted key.
+
+    Returns
+    -------
+    str
+        One or two sentences.
+    """
+    prefix, _, key = name.rpartition(".")
+    elsewhere = {
+        field: f"{section}.{field}"
+        for section, kind in sections(model).items()
+        for field in kind.model_fields
+    }
+    close = "" if key in elsewhere else nearest(key, owner.model_fields)
+    if close:
+        suggestion = f"{prefix}.{close}" if prefix else close
+    else:
+        suggestion = elsewhere.get(nearest(key, elsewhere), "")
+    hint = f"Did you mean {suggestion}?" if suggestion else f"Known: {', '.join(owner.model_fields)}."
+    return f"{shorten(name)} is not a known key. {hint}"
+
+
+def _locate(model: type[BaseModel], path: Sequence[str]) -> tuple[type[BaseModel], FieldInfo | None]:
+    """Return the model that owns the last key of a path, and its field if it has one."""
+    section = sections(model).get(path[0]) if path else None
+    if section is not None and len(path) > 1:
+        return section, section.model_fields.get(path[1])
+    return model, model.model_fields.get(path[0]) if path else None
+
+
+def _sentence(
+    model: type[BaseModel], owner: type[BaseModel], name: str, field: FieldInfo | None, value: object
+) -> str:
+    if field is None:
+        return unknown_key(model, owner, name)
+    if name in sections(owner):
+        return (
+            f"{name} = {show(value)} is not allowed: it must be a table. Write [{name}] with its keys below."
+        )
+    return f"{name} = {show(value)} is not allowed: it must be {allowed(field)}. {_advice(field, value)}"
+
+
+def _advice(field: FieldInfo, value: object) -> str:
+    """Say what to try instead of a value."""
+    if is_number(field) and is_fraction(value):
+        try:
+            parse_number(str(value))
+        except ValueError as reason:
+            return f"Mind that {reason}."
+    if is_number(field) and isinstance(value, str) and value not in choices(field):
+        return "Write a number without quotes." if value.strip()[:1].isdigit() else _default(field)
+    words = [word for word in choices(field) if isinstance(word, str)]
+    close = nearest(value.lower(), words) if isinstance(value, str) else ""
+    return f'Did you mean "{close}"?' if close else _default(field)
+
+
+def _default(field: FieldInfo) -> str:
+    if field.default is None:
+        return "Leave it out to take the same value as the field it follows."
+    return f"The default is {show(field.default)}."

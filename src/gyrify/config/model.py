@@ -1,0 +1,208 @@
+"""The whole configuration: one frozen object that states every number of a run."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final
+
+from pydantic import model_validator
+
+from gyrify.config import checks, toml_text
+from gyrify.config.base import Section, setting
+from gyrify.config.faults import raise_faults, sections, unknown_key
+from gyrify.config.preset_files import preset_data
+from gyrify.config.sections import (
+    Contact,
+    Dissipation,
+    Geometry,
+    Growth,
+    Limits,
+    Material,
+    MeshSettings,
+    Metrics,
+    Output,
+    SchemaVersion,
+    Solver,
+    Stability,
+)
+from gyrify.config.words import extra, show
+
+NOT_HASHED: Final = frozenset({"output", "limits"})
+
+
+class Config(Section):
+    """Every number of a run, checked; ``Config()`` is the standard slice.
+
+    Overrides and files may start from a preset (``preset = "wang2019"``): its values come first, and the
+    name is not kept, so that equal values are equal configurations.
+    """
+
+    schema_version: SchemaVersion = setting(1, "Version of this format.")
+    seed: int = setting(0, "Seed of every random choice.", ge=0, le=2**32 - 1)
+    geometry: Geometry = Geometry()
+    mesh: MeshSettings = MeshSettings()
+    material: Material = Material()
+    growth: Growth = Growth()
+    contact: Contact = Contact()
+    dissipation: Dissipation = Dissipation()
+    solver: Solver = Solver()
+    stability: Stability = Stability()
+    metrics: Metrics = Metrics()
+    output: Output = Output()
+    limits: Limits = Limits()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _start_from_preset(cls, data: Any) -> Any:
+        if not isinstance(data, dict) or "preset" not in data:
+            return data
+        own = {key: value for key, value in data.items() if key != "preset"}
+        return merge(preset_data(data["preset"]), own)
+
+    @model_validator(mode="after")
+    def _check_together(self) -> Config:
+        raise_faults(checks.faults(self))
+        return self
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> Config:
+        """Build a configuration from nested tables, as TOML or JSON hold them."""
+        return cls(**{str(key): value for key, value in data.items()})
+
+    @classmethod
+    def from_toml(cls, source: str | Path) -> Config:
+        """Read a configuration from TOML.
+
+        Parameters
+        ----------
+        source : str or Path
+            The text itself, or (a Path) the file.
+
+        Returns
+        -------
+        Config
+            Checked and complete.
+        """
+        if isinstance(source, Path):
+            return cls.load(source)
+        return cls.from_dict(toml_text.parse(source))
+
+    @classmethod
+    def load(cls, path: str | Path) -> Config:
+        """Read a configuration from a TOML file."""
+        return cls.from_dict(read_tables(path))
+
+    @classmethod
+    def preset(cls, name: str) -> Config:
+        """Return the configuration of a preset."""
+        return cls.from_dict(preset_data(name))
+
+    def with_overrides(self, overrides: Mapping[str, object]) -> Config:
+        """Return a copy with some values replaced, checked anew.
+
+        Parameters
+        ----------
+        overrides : mapping
+            Values by dotted key, such as ``{"growth.ratio": 2.0, "seed": 3}``; numbers may be fractions
+            (``"1/1.36"``).
+
+        Returns
+        -------
+        Config
+            The new configuration.
+        """
+        given = {key: _as_dict(value) for key, value in self.model_dump(exclude_unset=True).items()}
+        return type(self).from_dict(merge(given, nested(overrides)))
+
+    def replace(self, **overrides: object) -> Config:
+        """Return a copy with some values replaced: ``config.replace(**{"growth.ratio": 2.0})``."""
+        return self.with_overrides(overrides)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return every value in nested dictionaries fit for JSON."""
+        return self.model_dump(mode="json")
+
+    def to_toml(self) -> str:
+        """Write every value as TOML with its unit; reading it back gives an equal configuration."""
+        top = [(name, getattr(self, name), "") for name in self.top_level()]
+        blocks = [toml_text.table(top)]
+        for name, kind in sections(type(self)).items():
+            section = getattr(self, name)
+            lines = [
+                (key, getattr(section, key), extra(field, "unit")) for key, field in kind.model_fields.items()
+            ]
+            blocks.append(f"[{name}]\n{toml_text.table(lines)}")
+        return "\n".join(blocks)
+
+    @classmethod
+    def top_level(cls) -> tuple[str, ...]:
+        """Return the names of the fields outside any section."""
+        return tuple(name for name in cls.model_fields if name not in sections(cls))
+
+    @property
+    def config_hash(self) -> str:
+        """SHA-256 (hexadecimal) of the canonical JSON of every value outside `output` and `limits`."""
+        hashed = {key: value for key, value in self.to_dict().items() if key not in NOT_HASHED}
+        text = json.dumps(hashed, sort_keys=True, separators=(",", ":"), allow_nan=False)
+        return hashlib.sha256(text.encode("ascii")).hexdigest()
+
+    def _repr_html_(self) -> str:
+        from gyrify.config.table import html_table
+
+        return html_table(self)
+
+
+def read_tables(path: str | Path) -> dict[str, Any]:
+    """Read the tables of a TOML file without checking what they mean."""
+    return toml_text.parse(toml_text.read_text(Path(path)), f"The file {path}")
+
+
+def merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+    """Lay tables over others; a value that should be a table replaces it, to be refused by name."""
+    merged = dict(base)
+    for key, value in over.items():
+        below = merged.get(key)
+        value = _as_dict(value)
+        merged[key] = {**below, **value} if isinstance(below, dict) and isinstance(value, dict) else value
+    return merged
+
+
+def nested(overrides: Mapping[str, object]) -> dict[str, Any]:
+    """Turn dotted keys into nested tables, refusing keys that do not exist.
+
+    Parameters
+    ----------
+    overrides : mapping
+        Values by dotted key.
+
+    Returns
+    -------
+    dict
+        Tables by section.
+    """
+    tables: dict[str, Any] = {}
+    faults = []
+    for dotted, value in overrides.items():
+        name, _, key = dotted.partition(".")
+        section = sections(Config).get(name)
+        if section is None and (name not in (*Config.top_level(), "preset") or key):
+            faults.append(unknown_key(Config, Config, dotted))
+        elif section is not None and not key:
+            faults.append(
+                f"{name} = {show(value)} is not allowed: {name} is a section. Name one of its keys."
+            )
+        elif section is not None and key not in section.model_fields:
+            faults.append(unknown_key(Config, section, dotted))
+        elif section is None:
+            tables[name] = value
+        else:
+            tables.setdefault(name, {})[key] = value
+    raise_faults(faults)
+    return tables
+
+
+def _as_dict(value: Any) -> Any:
+    return value.model_dump(exclude_unset=True) if isinstance(value, Section) else value

@@ -1,0 +1,46 @@
+"""Numbers written as text: plain or as a fraction such as ``1/1.36``; parsed, never evaluated."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Final
+
+MAX_LENGTH: Final = 64
+_DECIMAL: Final = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+NUMBER_PATTERN: Final = rf"^\s*{_DECIMAL}\s*(?:/\s*{_DECIMAL}\s*)?$"
+
+
+def parse_number(text: str) -> float:
+    """Read a decimal number or a fraction of two decimal numbers.
+
+    Parameters
+    ----------
+    text : str
+        Such as ``"3.6"``, ``"1e-3"`` or ``"1/1.36"``; at most 64 characters.
+
+    Returns
+    -------
+    float
+        The value, always finite.
+
+    Raises
+    ------
+    ValueError
+        When the text is no such number, divides by zero or overflows.
+    """
+    if len(text) > MAX_LENGTH or not re.match(NUMBER_PATTERN, text, re.ASCII):
+        raise ValueError('a number looks like 3.6, 1e-3 or "1/1.36"')
+    numerator, _, denominator = text.partition("/")
+    divisor = float(denominator) if denominator else 1.0
+    if divisor == 0.0:
+        raise ValueError("the fraction divides by zero")
+    value = float(numerator) / divisor
+    if not math.isfinite(value):
+        raise ValueError("the number is too large")
+    return value
+
+
+def is_fraction(value: object) -> bool:
+    """Tell whether a value is text that can only be meant as a fraction."""
+    return isinstance(value, str) and "/" in value

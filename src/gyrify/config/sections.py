@@ -1,0 +1,312 @@
+"""The sections of a configuration; units: mm, Pa and the paper's growth time."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Final, Literal
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from gyrify.config.base import Section, setting
+
+PAPER: Final = "Wang 2019"
+
+OutputField = Literal[
+    "displacement",
+    "region",
+    "growth_stretch",
+    "J",
+    "J_elastic",
+    "J_growth",
+    "cauchy_stress",
+    "von_mises",
+    "mean_stress",
+    "circumferential_stress",
+    "thickness",
+    "curvature",
+    "contact_force",
+]
+ALL_FIELDS: Final[tuple[OutputField, ...]] = OutputField.__args__  # type: ignore[attr-defined]
+
+
+def _whole(value: Any) -> Any:
+    """Refuse what equals a whole number without being one, such as True or 1.0."""
+    if type(value) is not int:
+        raise ValueError("write a whole number")
+    return value
+
+
+Sign = Annotated[Literal[1, -1], BeforeValidator(_whole)]
+SchemaVersion = Annotated[Literal[1], BeforeValidator(_whole)]
+Stiffness = Annotated[float, Field(gt=0, le=1e15)]
+
+
+class Geometry(Section):
+    """The slice: a hollow ellipse or circle, or a strip that is periodic in x and clamped below."""
+
+    shape: Literal["ellipse", "circle", "strip"] = setting(
+        "ellipse", "Shape of the slice.", source=f"{PAPER}, Fig. 1"
+    )
+    area: float = setting(
+        4069.0,
+        "Area inside the outer contour, hole included; ellipse and circle only.",
+        unit="mm²",
+        source=f"{PAPER}, Fig. 1 (40.69 cm²)",
+        gt=0,
+        le=1e10,
+    )
+    aspect_ratio: float = setting(
+        1.2,
+        "Long over short axis of the ellipse; ignored by circle and strip.",
+        source=f"{PAPER}, Fig. 1",
+        ge=1,
+        le=3,
+    )
+    hole_fraction: float = setting(
+        0.5,
+        "Axes of the clamped hole over axes of the contour; ellipse and circle only.",
+        source=f"{PAPER}, Fig. 1",
+        ge=0.1,
+        le=0.9,
+    )
+    cortical_thickness: float = setting(
+        1.5,
+        "Initial thickness T of the cortex, less than 0.95 of the narrowest wall.",
+        unit="mm",
+        source=f"{PAPER}, Mathematical Model",
+        gt=0,
+    )
+    length: float = setting(
+        40.0, "Period of the strip in x; ignored by ellipse and circle.", unit="mm", gt=0, le=1e5
+    )
+    depth: float = setting(
+        18.0,
+        "Depth of the strip, cortex included (default: the mean wall of the standard slice).",
+        unit="mm",
+        gt=0,
+        le=1e5,
+    )
+
+    @property
+    def semi_axes(self) -> tuple[float, float]:
+        """Semi-axes (a, b) of the outer contour of an ellipse or circle [mm]."""
+        ratio = self.aspect_ratio if self.shape == "ellipse" else 1.0
+        minor = math.sqrt(self.area / (math.pi * ratio))
+        return ratio * minor, minor
+
+    @property
+    def mean_radius(self) -> float:
+        """Mean radius R = √(ab) of an ellipse or circle [mm]."""
+        return math.sqrt(self.area / math.pi)
+
+    @property
+    def narrowest_wall(self) -> float:
+        """Smallest distance from the contour to the clamped boundary [mm]."""
+        if self.shape == "strip":
+            return self.depth
+        return self.semi_axes[1] * (1.0 - self.hole_fraction)
+
+
+class MeshSettings(Section):
+    """How the slice is divided into cells."""
+
+    n_around: int = setting(
+        216,
+        "Points on the outer contour (along a period of the strip).",
+        source=f"{PAPER}, Results",
+        ge=24,
+        le=4096,
+    )
+    n_layers: int = setting(
+        17,
+        "Layers from the clamped boundary to the contour.",
+        source=f"{PAPER}, Results (7344 triangles / 216 / 2)",
+        ge=3,
+        le=512,
+    )
+    n_cortex_layers: int = setting(
+        6,
+        "Layers in the cortex, fewer than n_layers.",
+        source=f"{PAPER}, Results (at least six)",
+        ge=2,
+        le=511,
+    )
+    grading: Literal["geometric", "uniform"] = setting(
+        "geometric", "White layers: geometric (the first as thick as a cortical one) or uniform."
+    )
+    split: Literal["alternating", "one", "random"] = setting(
+        "alternating", "How each quadrilateral is cut into two triangles."
+    )
+    node_jitter: float = setting(
+        1e-3, "Seeded random shift of the points, as a fraction of the local layer.", ge=0, le=0.1
+    )
+    element: Literal["linear", "quadratic", "mean_dilatation"] = setting(
+        "linear", "Finite element.", source=f"{PAPER}, Results (3-node triangles)"
+    )
+    refine: int = setting(0, "Times the whole mesh is refined by halving.", ge=0, le=4)
+    refine_cortex: int = setting(0, "Times the cortex alone is refined by halving.", ge=0, le=4)
+
+
+class Material(Section):
+    """Neo-Hookean cortex and white matter."""
+
+    young_modulus: float = setting(
+        9210.87,
+        "Young's modulus E_G of the cortex.",
+        unit="Pa",
+        source=f"{PAPER}, Mathematical Model (Soza)",
+        gt=0,
+        le=1e13,
+    )
+    stiffness_ratio: float = setting(
+        1.0, "Stiffness of the cortex over white matter, E_G/E_W.", source=f"{PAPER}, Results", ge=0.05, le=50
+    )
+    poisson_ratio: float = setting(
+        0.458, "Poisson ratio of the cortex.", source=f"{PAPER}, Mathematical Model (Soza)", gt=-1, lt=0.5
+    )
+    poisson_ratio_white: float = setting(
+        None,
+        "Poisson ratio of white matter; that of the cortex when not given.",
+        source=f"{PAPER}, Results",
+        gt=-1,
+        lt=0.5,
+    )
+
+    @model_validator(mode="after")
+    def _same_poisson_ratio(self) -> Material:
+        """State the number that is meant; it does not count as given and follows later overrides."""
+        if self.__dict__["poisson_ratio_white"] is None:
+            self.__dict__["poisson_ratio_white"] = self.poisson_ratio
+        return self
+
+    @property
+    def young_modulus_white(self) -> float:
+        """Young's modulus E_W of white matter [Pa]."""
+        return self.young_modulus / self.stiffness_ratio
+
+
+class Growth(Section):
+    """Growth of the two tissues."""
+
+    rate: float = setting(
+        0.002,
+        "Growth rate G_G of the cortex.",
+        unit="1/time",
+        source=f"{PAPER}, Mathematical Model",
+        ge=0,
+        le=1e6,
+    )
+    ratio: float = setting(
+        3.6,
+        "Growth rate of the cortex over white matter, G_G/G_W.",
+        source=f"{PAPER}, Eqs 9-11",
+        ge=0.1,
+        le=1e4,
+    )
+    duration: float = setting(
+        500.0, "Growth time Δt.", unit="time", source=f"{PAPER}, Mathematical Model", gt=0, le=1e9
+    )
+    out_of_plane: Literal["blocked", "none", "generalised"] = setting(
+        "blocked",
+        "Along z: blocked (grows, F33 = 1), none (no growth, F33 = 1), generalised (no net force).",
+    )
+    stretch: Literal["linear", "exponential"] = setting(
+        "linear", "Growth stretch: linear (1 + G t) or exponential (exp G t)."
+    )
+    energy_per: Literal["grown", "reference"] = setting("grown", "Volume that the energy density refers to.")
+    law: Literal["isotropic", "tangential"] = setting(
+        "isotropic", "Direction of growth in the plane: all, or along the layers of the cortex only."
+    )
+
+    @property
+    def rate_white(self) -> float:
+        """Growth rate G_W of white matter [1/time]."""
+        return self.rate / self.ratio
+
+
+class Contact(Section):
+    """Self-contact of the outer contour."""
+
+    enabled: bool = setting(True, "Whether the contour may not cross itself; off only for comparison.")
+    activation_fraction: float = setting(
+        0.0667,
+        "Gap at which contact sets in, over T; capped at half the shortest deformed contour edge.",
+        gt=0,
+        le=1,
+    )
+    barrier_stiffness: Stiffness | Literal["auto"] = setting(
+        "auto", "Stiffness of the contact barrier.", unit="Pa"
+    )
+
+
+class Dissipation(Section):
+    """Resistance to the rate of deformation."""
+
+    kind: Literal["drag", "kelvin_voigt", "none"] = setting(
+        "drag", "Drag against a fixed background, Kelvin-Voigt viscosity of the tissue, or none."
+    )
+    number: float = setting(
+        1.3,
+        "c R²/(E_G · duration) for drag of force c·m·u̇, m the reference area; "
+        "η/(E_G · duration) for Kelvin-Voigt.",
+        ge=0,
+        le=1000,
+    )
+
+
+class Solver(Section):
+    """Growth increments and Newton's method."""
+
+    increments: int = setting(100, "Growth increments planned.", ge=1, le=100_000)
+    min_increment: float = setting(
+        1e-6, "Smallest increment before a run fails.", unit="fraction of duration", gt=0, le=1
+    )
+    tolerance: float = setting(
+        1e-6, "Largest nodal force allowed at convergence.", unit="E_G × mean cortical edge", gt=0, le=1e-2
+    )
+    max_newton: int = setting(
+        60, "Newton iterations per increment; reaching it is a failure, never acceptance.", ge=1, le=10_000
+    )
+    linear_solver: Literal["auto", "pardiso", "superlu"] = setting(
+        "auto", "Sparse direct solver; auto takes PARDISO where it is installed."
+    )
+
+
+class Stability(Section):
+    """Detection of buckling."""
+
+    detect: bool = setting(True, "Whether the loss of stability is looked for.")
+    follow_branch: bool = setting(False, "Whether to step onto the buckled branch at the loss of stability.")
+    sign: Sign = setting(1, "Side of the buckled branch to follow.")
+
+
+class Metrics(Section):
+    """How folding is measured."""
+
+    closing_radius: float = setting(
+        10.0,
+        "Radius of the morphological closing that outlines the exposed surface.",
+        unit="mm",
+        gt=0,
+        le=1e5,
+    )
+    gyrus_prominence: float = setting(
+        0.3, "Height from which an outward bump counts as a gyrus.", unit="mm", gt=0, le=1e5
+    )
+    samples: int = setting(2000, "Points of the contour resampled by arc length.", ge=100, le=1_000_000)
+
+
+class Output(Section):
+    """What is written; no influence on the result or on its hash."""
+
+    every: int = setting(1, "Increments between two steps of the derived history.", ge=1, le=100_000)
+    fields: tuple[OutputField, ...] = setting(ALL_FIELDS, "Fields of the derived history.", strict=False)
+
+
+class Limits(Section):
+    """When to stop early; no influence on the hash."""
+
+    wall_time: float = setting(
+        0.0, "Wall time after which a run stops cleanly; 0 = none.", unit="s", ge=0, le=1e9
+    )
+    memory: float = setting(0.0, "Memory at which a run stops cleanly; 0 = none.", unit="MB", ge=0, le=1e9)

@@ -1,0 +1,120 @@
+"""TOML in and out: files read with care, values written so that they come back bit for bit."""
+
+from __future__ import annotations
+
+import json
+import stat
+import tomllib
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, Final
+
+from gyrify.config.words import shorten
+from gyrify.errors import ConfigError
+
+MAX_BYTES: Final = 64 * 1024
+
+
+def read_text(path: Path) -> str:
+    """Read a configuration file.
+
+    Parameters
+    ----------
+    path : Path
+        A regular file of at most 64 KiB in UTF-8.
+
+    Returns
+    -------
+    str
+        Its text.
+
+    Raises
+    ------
+    ConfigError
+        When the file is missing, unreadable, too large or not UTF-8.
+    """
+    name = f"The configuration file {shorten(str(path))}"
+    try:
+        if not stat.S_ISREG(path.stat().st_mode):
+            raise ConfigError(f"{name} is not a regular file.", "Name a TOML file.")
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except FileNotFoundError:
+        raise ConfigError(f"{name} does not exist.", "Check the path.") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise ConfigError(
+            f"{name} cannot be read: {reason}.", "Check the path and its permissions."
+        ) from None
+    if len(data) > MAX_BYTES:
+        raise ConfigError(f"{name} is larger than {MAX_BYTES // 1024} KiB.", "Name a configuration in TOML.")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ConfigError(f"{name} is not UTF-8 text (byte {error.start}).", "Save it as UTF-8.") from None
+
+
+def parse(text: str, name: str = "The configuration") -> dict[str, Any]:
+    """Parse TOML, or say in one sentence where it is broken.
+
+    Parameters
+    ----------
+    text : str
+        TOML of at most 64 KiB.
+    name : str, optional
+        What the text is called in a message.
+
+    Returns
+    -------
+    dict
+        Its tables.
+    """
+    if len(text) > MAX_BYTES:
+        raise ConfigError(f"{name} is larger than {MAX_BYTES // 1024} KiB.", "Shorten it.")
+    try:
+        return tomllib.loads(text)
+    except RecursionError:
+        reason = "it is nested too deeply"
+    except ValueError as error:
+        reason = shorten(str(error).replace("\n", " ")) if len(str(error)) > 200 else str(error)
+    file_hint = (
+        " To read a file, use Config.load." if text.strip().endswith(".toml") and "\n" not in text else ""
+    )
+    raise ConfigError(f"{name} is not valid TOML: {reason}.", f"Mend or complete that line.{file_hint}")
+
+
+def literal(value: Any) -> str:
+    """Write a value as TOML.
+
+    Parameters
+    ----------
+    value : bool, int, float, str or sequence of those
+        Floats are finite; their shortest exact form is written.
+
+    Returns
+    -------
+    str
+        The TOML literal.
+    """
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(literal(item) for item in value) + "]"
+    return str(value).lower() if isinstance(value, bool) else repr(value)
+
+
+def table(lines: Iterable[tuple[str, Any, str]]) -> str:
+    """Write keys with values and trailing comments.
+
+    Parameters
+    ----------
+    lines : iterable of (str, object, str)
+        Key, value and comment.
+
+    Returns
+    -------
+    str
+        One line for each key.
+    """
+    written = ((f"{key} = {literal(value)}", comment) for key, value, comment in lines)
+    return "".join(f"{pair}  # {comment}\n" if comment else f"{pair}\n" for pair, comment in written)

@@ -1,0 +1,105 @@
+"""Fields and values in plain words, for messages, tables and the documentation."""
+
+from __future__ import annotations
+
+import types
+import typing
+from collections.abc import Mapping
+from typing import Any, Final
+
+from pydantic.fields import FieldInfo
+
+MAX_SHOWN: Final = 60
+
+
+def shorten(text: str) -> str:
+    """Return a text fit for one line: at most 60 characters, nothing unprintable."""
+    short = text if len(text) <= MAX_SHOWN else text[: MAX_SHOWN - 1] + "…"
+    return short if short.isprintable() else repr(short)[1:-1]
+
+
+def show(value: object) -> str:
+    """Return a value as TOML would write it, shortened and free of control characters."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return f'"{shorten(value)}"'
+    if isinstance(value, Mapping):
+        return "a table"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(show(item) for item in value[:3]) + (", …]" if len(value) > 3 else "]")
+    if isinstance(value, int) and value.bit_length() > 128:
+        return "a huge whole number"
+    return shorten(repr(value)) if isinstance(value, int | float) else shorten(str(value))
+
+
+def extra(field: FieldInfo, name: str) -> str:
+    """Return the unit or source a field was declared with."""
+    declared = field.json_schema_extra
+    return str(declared.get(name, "")) if isinstance(declared, dict) else ""
+
+
+def bounds(field: FieldInfo) -> dict[str, float]:
+    """Return the bounds of a field under the names gt, ge, lt, le."""
+    inner = [item for kind in typing.get_args(field.annotation) for item in getattr(kind, "__metadata__", ())]
+    constraints = [*field.metadata, *(c for item in inner for c in getattr(item, "metadata", ()))]
+    names = ("gt", "ge", "lt", "le")
+    return {name: getattr(c, name) for c in constraints for name in names if hasattr(c, name)}
+
+
+def alternatives(field: FieldInfo) -> tuple[Any, ...]:
+    """Return the types of a field, without annotations."""
+    annotation = field.annotation
+    union = typing.get_origin(annotation) in (typing.Union, types.UnionType)
+    members = typing.get_args(annotation) if union else (annotation,)
+    return tuple(m.__origin__ if typing.get_origin(m) is typing.Annotated else m for m in members)
+
+
+def choices(field: FieldInfo) -> tuple[Any, ...]:
+    """Return the words a field may take, also as items of a list."""
+    words: list[Any] = []
+    for kind in alternatives(field):
+        item = typing.get_args(kind)[0] if typing.get_origin(kind) is tuple else kind
+        words += typing.get_args(item) if typing.get_origin(item) is typing.Literal else ()
+    return tuple(words)
+
+
+def is_number(field: FieldInfo) -> bool:
+    """Tell whether a field takes numbers."""
+    return bool({int, float} & set(alternatives(field)))
+
+
+def allowed(field: FieldInfo) -> str:
+    """Say in words which values a field takes.
+
+    Parameters
+    ----------
+    field : FieldInfo
+        A field declared with `setting`.
+
+    Returns
+    -------
+    str
+        Such as ``"a number from 0.1 to 0.9"`` or ``'"linear" or "exponential"'``.
+    """
+    unit = f" [{extra(field, 'unit')}]" if extra(field, "unit") else ""
+    kinds = alternatives(field)
+    parts = ["true or false"] if bool in kinds else []
+    if is_number(field):
+        parts.append(f"a {'whole ' if int in kinds else ''}number{_range(bounds(field))}{unit}")
+    words = [show(word) for word in choices(field)]
+    if words:
+        listed = ", ".join(words[:-1]) + " or " + words[-1] if len(words) > 1 else words[0]
+        parts.append(f"a list of {listed}" if typing.get_origin(kinds[0]) is tuple else listed)
+    return " or ".join(parts)
+
+
+def _range(limits: Mapping[str, float]) -> str:
+    """Return bounds in words, with a leading space."""
+    shown = {name: f"{value:.15g}" for name, value in limits.items()}
+    if {"ge", "le"} <= shown.keys():
+        return f" from {shown['ge']} to {shown['le']}"
+    words = {"gt": "above", "ge": "at least", "lt": "below", "le": "at most"}
+    return (" " if shown else "") + " and ".join(
+        f"{words[name]} {shown[name]}" for name in words if name in shown
+    )
