@@ -13,21 +13,9 @@ from pydantic import model_validator
 from gyrify.config import checks, toml_text
 from gyrify.config.base import Section, setting
 from gyrify.config.faults import raise_faults, sections, unknown_key
+from gyrify.config.physics_sections import Contact, Dissipation, Geometry, Growth, Material, MeshSettings
 from gyrify.config.preset_files import preset_data
-from gyrify.config.sections import (
-    Contact,
-    Dissipation,
-    Geometry,
-    Growth,
-    Limits,
-    Material,
-    MeshSettings,
-    Metrics,
-    Output,
-    SchemaVersion,
-    Solver,
-    Stability,
-)
+from gyrify.config.run_sections import Limits, Metrics, Output, SchemaVersion, Solver, Stability
 from gyrify.config.words import extra, show
 
 NOT_HASHED: Final = frozenset({"output", "limits"})

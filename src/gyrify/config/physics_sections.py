@@ -1,43 +1,16 @@
-"""The sections of a configuration; units: mm, Pa and the paper's growth time."""
+"""The sections that say what grows and how; units: mm, Pa and the paper's growth time."""
 
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Final, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from gyrify.config.base import Section, setting
 
 PAPER: Final = "Wang 2019"
 
-OutputField = Literal[
-    "displacement",
-    "region",
-    "growth_stretch",
-    "J",
-    "J_elastic",
-    "J_growth",
-    "cauchy_stress",
-    "von_mises",
-    "mean_stress",
-    "circumferential_stress",
-    "thickness",
-    "curvature",
-    "contact_force",
-]
-ALL_FIELDS: Final[tuple[OutputField, ...]] = OutputField.__args__  # type: ignore[attr-defined]
-
-
-def _whole(value: Any) -> Any:
-    """Refuse what equals a whole number without being one, such as True or 1.0."""
-    if type(value) is not int:
-        raise ValueError("write a whole number")
-    return value
-
-
-Sign = Annotated[Literal[1, -1], BeforeValidator(_whole)]
-SchemaVersion = Annotated[Literal[1], BeforeValidator(_whole)]
 Stiffness = Annotated[float, Field(gt=0, le=1e15)]
 
 
@@ -252,61 +225,3 @@ class Dissipation(Section):
         ge=0,
         le=1000,
     )
-
-
-class Solver(Section):
-    """Growth increments and Newton's method."""
-
-    increments: int = setting(100, "Growth increments planned.", ge=1, le=100_000)
-    min_increment: float = setting(
-        1e-6, "Smallest increment before a run fails.", unit="fraction of duration", gt=0, le=1
-    )
-    tolerance: float = setting(
-        1e-6, "Largest nodal force allowed at convergence.", unit="E_G × mean cortical edge", gt=0, le=1e-2
-    )
-    max_newton: int = setting(
-        60, "Newton iterations per increment; reaching it is a failure, never acceptance.", ge=1, le=10_000
-    )
-    linear_solver: Literal["auto", "pardiso", "superlu"] = setting(
-        "auto", "Sparse direct solver; auto takes PARDISO where it is installed."
-    )
-
-
-class Stability(Section):
-    """Detection of buckling."""
-
-    detect: bool = setting(True, "Whether the loss of stability is looked for.")
-    follow_branch: bool = setting(False, "Whether to step onto the buckled branch at the loss of stability.")
-    sign: Sign = setting(1, "Side of the buckled branch to follow.")
-
-
-class Metrics(Section):
-    """How folding is measured."""
-
-    closing_radius: float = setting(
-        10.0,
-        "Radius of the morphological closing that outlines the exposed surface.",
-        unit="mm",
-        gt=0,
-        le=1e5,
-    )
-    gyrus_prominence: float = setting(
-        0.3, "Height from which an outward bump counts as a gyrus.", unit="mm", gt=0, le=1e5
-    )
-    samples: int = setting(2000, "Points of the contour resampled by arc length.", ge=100, le=1_000_000)
-
-
-class Output(Section):
-    """What is written; no influence on the result or on its hash."""
-
-    every: int = setting(1, "Increments between two steps of the derived history.", ge=1, le=100_000)
-    fields: tuple[OutputField, ...] = setting(ALL_FIELDS, "Fields of the derived history.", strict=False)
-
-
-class Limits(Section):
-    """When to stop early; no influence on the hash."""
-
-    wall_time: float = setting(
-        0.0, "Wall time after which a run stops cleanly; 0 = none.", unit="s", ge=0, le=1e9
-    )
-    memory: float = setting(0.0, "Memory at which a run stops cleanly; 0 = none.", unit="MB", ge=0, le=1e9)
