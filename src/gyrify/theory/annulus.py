@@ -143,7 +143,7 @@ def base_state(
     growth_time : float, optional
         t [time], not negative; the annulus' duration by default.
     guess : BaseState, optional
-        A nearby state of an annulus of the same geometry, to start from.
+        A nearby state to start from; ignored if its nodes differ.
 
     Returns
     -------
@@ -161,7 +161,7 @@ def base_state(
     if not 0.0 <= time < np.inf:
         raise ConfigError(f"The growth time is {time}.", "It must be finite and not negative.")
     problem = _RadialProblem.build(annulus)
-    if guess is not None:
+    if guess is not None and np.array_equal(guess.line.nodes, problem.line.nodes):
         try:
             start = np.append(guess.nodal_radius, guess.axial_stretch)
             return _state(problem, time, *problem.solve(start, time))
