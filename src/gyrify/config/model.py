@@ -149,12 +149,14 @@ def read_tables(path: str | Path) -> dict[str, Any]:
 
 
 def merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
-    """Lay tables over others; a value that should be a table replaces it, to be refused by name."""
+    """Lay tables over others; where a table meets what is none, the latter stays, to be refused by name."""
     merged = dict(base)
     for key, value in over.items():
-        below = merged.get(key)
-        value = _as_dict(value)
-        merged[key] = {**below, **value} if isinstance(below, dict) and isinstance(value, dict) else value
+        below, above = merged.get(key), _as_dict(value)
+        if isinstance(below, dict) and isinstance(above, dict):
+            merged[key] = {**below, **above}
+        elif below is None or not isinstance(above, dict):
+            merged[key] = above
     return merged
 
 

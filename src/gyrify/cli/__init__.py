@@ -1,0 +1,7 @@
+"""The command line: ``gyrify``."""
+
+from __future__ import annotations
+
+from gyrify.cli.app import main
+
+__all__ = ["main"]

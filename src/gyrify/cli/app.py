@@ -1,0 +1,75 @@
+"""The application: collects the commands and turns errors into exit codes.
+
+A command lives in a module of its own, takes plain values, imports what is heavy inside its function and
+returns its exit code (None is 0). It prints its one JSON document last.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from typing import Final
+
+from cyclopts import App, Parameter
+from cyclopts.exceptions import CycloptsError
+
+from gyrify import __version__
+from gyrify.cli import config, presets
+from gyrify.cli.streams import complain, print_json
+from gyrify.errors import ConfigError, GyrifyError, HistoryError
+
+COMPLETED: Final = 0
+FAILED: Final = 1
+USAGE: Final = 2
+STOPPED: Final = 3
+INTERRUPTED: Final = 130
+
+app = App(
+    name="gyrify",
+    help="Simulate how the cerebral cortex folds.",
+    version=__version__,
+    default_parameter=Parameter(negative=(), show_default=False),
+    result_action="return_value",
+    suppress_keyboard_interrupt=False,
+)
+app.command(presets.presets)
+app.command(config.app)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        What follows ``gyrify``; by default the arguments of the process.
+
+    Returns
+    -------
+    int
+        0 completed, 1 failed, 2 usage or configuration, 3 stopped by a limit, 130 interrupted.
+    """
+    tokens = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        code = app(tokens, exit_on_error=False, print_error=False)
+        sys.stdout.flush()
+        return code if isinstance(code, int) else COMPLETED
+    except CycloptsError as error:
+        return _report(ConfigError(" ".join(str(error).split()), "See gyrify --help."), tokens)
+    except GyrifyError as error:
+        return _report(error, tokens)
+    except KeyboardInterrupt:
+        complain("Interrupted.")
+        return INTERRUPTED
+    except BrokenPipeError:  # the reader of a pipe has left
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return COMPLETED
+
+
+def _report(error: GyrifyError, tokens: Sequence[str]) -> int:
+    """Say an error on stderr and, where JSON was asked for, on stdout too; return the exit code."""
+    complain(str(error))
+    if "--json" in tokens:
+        print_json({"error": type(error).__name__, "message": error.message, "advice": error.advice})
+    return USAGE if isinstance(error, ConfigError | HistoryError) else FAILED

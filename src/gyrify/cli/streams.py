@@ -1,0 +1,24 @@
+"""What goes to stdout and what to stderr."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+
+def print_json(document: object) -> None:
+    """Print the one JSON document of a command on stdout."""
+    print(json.dumps(document, indent=2, ensure_ascii=True, allow_nan=False))
+
+
+def complain(message: str) -> None:
+    """Print a message on stderr."""
+    text = f"gyrify: {message}\n"
+    encoding = sys.stderr.encoding or "utf-8"
+    sys.stderr.write(text.encode(encoding, "backslashreplace").decode(encoding))
+
+
+def say(text: str) -> None:
+    """Print text on stdout, in whatever encoding it has."""
+    encoding = sys.stdout.encoding or "utf-8"
+    print(text.encode(encoding, "backslashreplace").decode(encoding))
