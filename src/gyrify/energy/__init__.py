@@ -1,0 +1,1 @@
+"""The energy of the tissue as a sum of terms."""

@@ -1,0 +1,70 @@
+"""Hyperelastic energy of growing cells: sum over cells of volume x (J_g or 1) x W(F_e)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gyrify.energy.kernels import ElasticKernels, elastic_kernels
+from gyrify.energy.kinematics import ElasticKinematics
+from gyrify.energy.term import Evaluation, FloatArray, Hessian, IntArray, Pattern
+
+
+class CellPattern:
+    """Sparsity pattern of a mesh and the position in it of every entry of every cell matrix."""
+
+    def __init__(self, cells: IntArray, n_dim: int) -> None:
+        dofs = (cells[:, :, None] * n_dim + np.arange(n_dim)).reshape(cells.shape[0], -1)
+        p, q = np.triu_indices(dofs.shape[1])
+        self.pattern, position = Pattern.of(dofs[:, p], dofs[:, q])
+        self.position = np.ascontiguousarray(position, dtype=np.int32)
+
+
+class ElasticEnergy:
+    r"""Neo-Hookean cells under growth.
+
+    .. math:: E(u) = \sum_c V_c w_c W(F_e), \quad w_c = J_g \text{ (per grown volume) or } 1
+
+    Parameters
+    ----------
+    kinematics : ElasticKinematics
+        Cells in their grown state.
+    mu, kappa : (n_cells,) float array
+        Shear and bulk modulus [Pa].
+    weight : (n_cells,) float array
+        Volume that the energy density is counted by [mm^2]: V J_g (grown) or V (reference).
+    pattern : CellPattern
+        Sparsity of the mesh.
+    """
+
+    def __init__(
+        self,
+        kinematics: ElasticKinematics,
+        mu: FloatArray,
+        kappa: FloatArray,
+        weight: FloatArray,
+        pattern: CellPattern,
+    ) -> None:
+        self.kinematics = kinematics
+        self.mu, self.kappa, self.weight = mu, kappa, weight
+        self.pattern = pattern
+        _, n_nodes, n_dim = kinematics.gradients.shape
+        self._kernels: ElasticKernels = elastic_kernels(n_dim, n_nodes)
+
+    def evaluate(self, u: FloatArray, order: int, project_psd: bool = False) -> Evaluation:
+        """Energy [Pa mm^2], gradient [Pa mm], Hessian [Pa]; see `EnergyTerm`."""
+        k = self.kinematics
+        gradient = np.zeros_like(u) if order >= 1 else np.empty((0, u.shape[1]))
+        values = np.zeros(self.pattern.pattern.rows.size if order >= 2 else 0)
+        material = (self.mu, self.kappa, self.weight)
+        value = self._kernels.accumulate(
+            u, k.cells, k.base, k.gradients, k.f33, *material, order, project_psd, self.pattern.position, gradient, values
+        )
+        if not np.isfinite(value):
+            return Evaluation(np.inf)
+        hessian = Hessian(self.pattern.pattern, values) if order >= 2 else None
+        return Evaluation(value, gradient if order >= 1 else None, hessian)
+
+    def max_step(self, u: FloatArray, du: FloatArray) -> float:
+        """Largest fraction of du, at most 1, before a cell is inverted."""
+        k = self.kinematics
+        return float(self._kernels.largest_step(u, du, k.cells, k.base, k.gradients))

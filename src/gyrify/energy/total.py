@@ -1,0 +1,104 @@
+"""Total energy: the sum of terms restricted to the free degrees of freedom."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from gyrify.energy.term import EnergyTerm, Evaluation, FloatArray, IntArray, Pattern
+
+
+class FreePattern:
+    """Superset of the sparsity of all terms, on the free degrees of freedom only.
+
+    Parameters
+    ----------
+    free : (n_free,) int array
+        Free degrees of freedom in increasing order, of ``n_dofs``.
+    n_dofs : int
+        Number of all degrees of freedom.
+    rows, cols : int arrays
+        Entries of the upper triangle, in all degrees of freedom, in any order and number.
+    """
+
+    def __init__(self, free: IntArray, n_dofs: int, rows: IntArray, cols: IntArray) -> None:
+        self.free, self.n_dofs = free, n_dofs
+        self._number = np.full(n_dofs, -1, dtype=np.int64)
+        self._number[free] = np.arange(free.size)
+        low, high = self._number[rows], self._number[cols]
+        inside = (low >= 0) & (high >= 0)
+        diagonal = np.arange(free.size) * (free.size + 1)
+        self._codes = np.unique(np.concatenate([low[inside] * free.size + high[inside], diagonal]))
+        self.rows, self.cols = self._codes // free.size, self._codes % free.size
+        self.indptr = np.searchsorted(self.rows, np.arange(free.size + 1))
+        self._maps: dict[int, tuple[Pattern, IntArray, IntArray]] = {}
+
+    def holds(self, pattern: Pattern) -> bool:
+        """Whether every free entry of a term's pattern is in this one."""
+        return self._map(pattern) is not None
+
+    def add(self, pattern: Pattern, values: FloatArray, data: FloatArray) -> None:
+        """Add a term's values to the data of the whole; the pattern must be held."""
+        mapped = self._map(pattern)
+        if mapped is None:
+            raise ValueError("the pattern of a term is not held by the pattern of the sum")
+        source, target = mapped
+        data[target] += values[source]
+
+    def _map(self, pattern: Pattern) -> tuple[IntArray, IntArray] | None:
+        """Which entries of a term go where; kept for as long as the term keeps its pattern."""
+        known = self._maps.get(id(pattern))
+        if known is not None and known[0] is pattern:
+            return known[1], known[2]
+        low, high = self._number[pattern.rows], self._number[pattern.cols]
+        source = np.flatnonzero((low >= 0) & (high >= 0))
+        codes = low[source] * self.free.size + high[source]
+        target = np.minimum(np.searchsorted(self._codes, codes), self._codes.size - 1)
+        if not np.array_equal(self._codes[target], codes):
+            return None
+        if codes.size > self.free.size:
+            self._maps[id(pattern)] = (pattern, source, target)
+        return source, target
+
+
+class TotalEnergy:
+    """Sum of energy terms; the solver sees nothing else.
+
+    Parameters
+    ----------
+    terms : sequence of EnergyTerm
+        The summands.
+    """
+
+    def __init__(self, terms: Sequence[EnergyTerm]) -> None:
+        self.terms = tuple(terms)
+
+    def value(self, u: FloatArray) -> float:
+        """Total energy [Pa mm^2]; infinite where the state is not admissible."""
+        total = 0.0
+        for term in self.terms:
+            total += term.evaluate(u, 0).value
+            if not np.isfinite(total):
+                return np.inf
+        return total
+
+    def gradient(self, u: FloatArray) -> FloatArray:
+        """(n_points, n_dim) total gradient [Pa mm], clamped points included."""
+        total = np.zeros_like(u)
+        for term in self.terms:
+            gradient = term.evaluate(u, 1).gradient
+            if gradient is not None:
+                total += gradient
+        return total
+
+    def evaluate(self, u: FloatArray, project_psd: bool) -> list[Evaluation]:
+        """Each term with its Hessian, for the solver to sum on a pattern that holds them all."""
+        return [term.evaluate(u, 2, project_psd) for term in self.terms]
+
+    def max_step(self, u: FloatArray, du: FloatArray) -> float:
+        """Largest fraction of du, at most 1, that every term admits."""
+        step = 1.0
+        for term in self.terms:
+            step = min(step, term.max_step(u, step * du) * step)
+        return step

@@ -1,0 +1,204 @@
+"""From a configuration to the problem that is solved: mesh, tissue fields, energy terms."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from gyrify.config import Config
+from gyrify.energy.contact import ContactEnergy, ContactSurface
+from gyrify.energy.elastic import CellPattern, ElasticEnergy
+from gyrify.energy.kinematics import ElasticKinematics, Simplices
+from gyrify.energy.term import EnergyTerm, FloatArray, IntArray
+from gyrify.energy.total import TotalEnergy
+from gyrify.energy.viscous import DragEnergy, KelvinVoigtEnergy, green_lagrange
+from gyrify.errors import ConfigError
+from gyrify.mesh import GREY, Mesh
+from gyrify.mesh.ring import elliptic_ring
+from gyrify.physics.growth import growth_stretch, growth_tensor, out_of_plane_growth
+from gyrify.physics.neo_hookean import lame_parameters
+from gyrify.solve.linear import linear_solver
+from gyrify.solve.newton import Criterion
+from gyrify.solve.quasistatic import State, Stepping
+from gyrify.solve.system import System
+
+# Barrier stiffness over Young's modulus of the cortex: sulci then rest at about half the activation distance.
+AUTO_BARRIER = 0.1
+
+
+def build_mesh(config: Config) -> Mesh:
+    """Mesh of a configuration.
+
+    Raises
+    ------
+    ConfigError
+        If the geometry or element is not available.
+    MeshError
+        If the geometry cannot be meshed well.
+    """
+    geometry, mesh = config.geometry, config.mesh
+    _refuse("geometry.shape", geometry.shape, ("ellipse", "circle"))
+    _refuse("mesh.element", mesh.element, ("linear",))
+    _refuse("mesh.refine", mesh.refine, (0,))
+    _refuse("mesh.refine_cortex", mesh.refine_cortex, (0,))
+    return elliptic_ring(
+        geometry.semi_axes,
+        geometry.hole_fraction,
+        geometry.cortical_thickness,
+        mesh.n_around,
+        mesh.n_layers,
+        mesh.n_cortex_layers,
+        grading=mesh.grading,
+        split=mesh.split,
+        node_jitter=mesh.node_jitter,
+        seed=config.seed,
+    )
+
+
+def _refuse(field: str, value: object, available: tuple[object, ...]) -> None:
+    if value not in available:
+        choices = ", ".join(repr(choice) for choice in available)
+        raise ConfigError(f"{field} = {value!r} is not available in this version.", f"Choose one of: {choices}.")
+
+
+class Slice:
+    """A growing slice of brain tissue: the problem that `gyrify.solve.quasistatic.grow` solves.
+
+    Parameters
+    ----------
+    config : Config
+        Every number of the run.
+    mesh : Mesh, optional
+        Mesh to use instead of the configured one.
+
+    Attributes
+    ----------
+    mesh : Mesh
+        The reference mesh.
+    rate : (n_cells,) float array
+        Growth rate of each cell [1/time].
+    mu, kappa : (n_cells,) float array
+        Shear and bulk modulus of each cell [Pa].
+    """
+
+    def __init__(self, config: Config, mesh: Mesh | None = None) -> None:
+        _refuse("growth.out_of_plane", config.growth.out_of_plane, ("blocked", "none"))
+        self.config = config
+        self.mesh = build_mesh(config) if mesh is None else mesh
+        grey = self.mesh.region == GREY
+        growth, material = config.growth, config.material
+        self.rate = np.where(grey, growth.rate, growth.rate_white)
+        self.tangential = grey & (growth.law == "tangential")
+        grey_moduli = lame_parameters(material.young_modulus, material.poisson_ratio)
+        white_moduli = lame_parameters(material.young_modulus_white, material.poisson_ratio_white)
+        self.mu, self.kappa = (np.where(grey, g, w) for g, w in zip(grey_moduli, white_moduli, strict=True))
+
+    @cached_property
+    def simplices(self) -> Simplices:
+        """Cells and their shape-function gradients."""
+        return Simplices.of(self.mesh.cell_points, self.mesh.cells, self.mesh.n_points)
+
+    @cached_property
+    def pattern(self) -> CellPattern:
+        """Sparsity of the cells."""
+        return CellPattern(self.mesh.cells, self.mesh.n_dim)
+
+    @cached_property
+    def surface(self) -> ContactSurface:
+        """Outer contour, for contact."""
+        return ContactSurface(self.mesh.points, self.mesh.contour, self.mesh.is_closed)
+
+    @cached_property
+    def lumped_area(self) -> FloatArray:
+        """(n_points,) reference area of each point [mm^2]."""
+        n_nodes = self.mesh.cells.shape[1]
+        shares = np.repeat(self.simplices.volumes / n_nodes, n_nodes)
+        return np.bincount(self.mesh.cells.ravel(), weights=shares, minlength=self.mesh.n_points)
+
+    @cached_property
+    def free(self) -> IntArray:
+        """Free degrees of freedom."""
+        is_free = np.ones(self.mesh.n_points, dtype=bool)
+        is_free[self.mesh.clamped] = False
+        return np.flatnonzero(np.repeat(is_free, self.mesh.n_dim))
+
+    @cached_property
+    def mean_cortical_edge(self) -> float:
+        """Mean length of the edges of grey cells [mm]."""
+        corners = self.mesh.cell_points[self.mesh.region == GREY]
+        return float(np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).mean())
+
+    @property
+    def stepping(self) -> Stepping:
+        """Increments and tolerance in physical units."""
+        solver, E = self.config.solver, self.config.material.young_modulus
+        criterion = Criterion(solver.tolerance * E * self.mean_cortical_edge, solver.max_newton)
+        return Stepping(solver.increments, solver.min_increment, criterion)
+
+    @property
+    def barrier_stiffness(self) -> float:
+        """Stiffness of the contact barrier [Pa]."""
+        chosen = self.config.contact.barrier_stiffness
+        return AUTO_BARRIER * self.config.material.young_modulus if chosen == "auto" else float(chosen)
+
+    def kinematics(self, time: float) -> ElasticKinematics:
+        """Cells in their grown state at a growth time."""
+        stretch = growth_stretch(self.rate, time, self.config.growth.stretch)
+        out_of_plane = out_of_plane_growth(stretch, self.config.growth.out_of_plane)
+        return ElasticKinematics.of(
+            self.simplices, growth_tensor(stretch, self.tangential, self.mesh.across), out_of_plane
+        )
+
+    def elastic_energy(self, kinematics: ElasticKinematics) -> ElasticEnergy:
+        """Hyperelastic energy of grown cells."""
+        return ElasticEnergy(kinematics, self.mu, self.kappa, self._weight(kinematics), self.pattern)
+
+    def contact_energy(self, u: FloatArray) -> ContactEnergy:
+        """Contact barrier for an increment that starts at a state u."""
+        contact, T = self.config.contact, self.config.geometry.cortical_thickness
+        d_hat = min(contact.activation_fraction * T, 0.5 * self.surface.shortest_edge(u))
+        return ContactEnergy(self.surface, d_hat, self.barrier_stiffness)
+
+    def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:
+        """See `gyrify.solve.quasistatic.Problem`."""
+        duration = self.config.growth.duration
+        kinematics = self.kinematics(fraction * duration)
+        terms: list[EnergyTerm] = [self.elastic_energy(kinematics)]
+        terms += self._dissipation(kinematics, start, start_fraction * duration, fraction - start_fraction)
+        if self.config.contact.enabled:
+            terms.append(self.contact_energy(start.u))
+        return TotalEnergy(terms)
+
+    def system(self, couplings: IntArray) -> System:
+        """See `gyrify.solve.quasistatic.Problem`."""
+        n_dofs = self.mesh.n_points * self.mesh.n_dim
+        solver = linear_solver(self.config.solver.linear_solver)
+        return System(self.free, n_dofs, self.mesh.n_dim, self.pattern.pattern, solver, couplings)
+
+    def candidates(self, u: FloatArray) -> IntArray:
+        """Point pairs of the contour closer than its shortest edge."""
+        return self.surface.couplings(u, 0.5 * self.surface.shortest_edge(u))
+
+    def is_path_admissible(self, u: FloatArray, u_end: FloatArray) -> bool:
+        """See `gyrify.solve.quasistatic.Problem`."""
+        return not self.config.contact.enabled or self.surface.is_path_collision_free(u, u_end)
+
+    def _weight(self, kinematics: ElasticKinematics) -> FloatArray:
+        """Volume that energy densities are counted by [mm^2]; rule 7: grown, so det F_g is not lost."""
+        if self.config.growth.energy_per == "grown":
+            return kinematics.volumes * kinematics.J_g
+        return kinematics.volumes
+
+    def _dissipation(
+        self, kinematics: ElasticKinematics, start: State, start_time: float, span: float
+    ) -> list[EnergyTerm]:
+        """Energy of the increment's dissipation; ``span`` is a fraction of the duration."""
+        kind, number = self.config.dissipation.kind, self.config.dissipation.number
+        if kind == "none" or number == 0.0:
+            return []
+        rate = number * self.config.material.young_modulus / span
+        if kind == "drag":
+            return [DragEnergy(rate / self.config.geometry.mean_radius**2, self.lumped_area, start.u)]
+        strain = green_lagrange(self.kinematics(start_time).deformation(start.u))
+        return [KelvinVoigtEnergy(kinematics, rate, self._weight(kinematics), strain, self.pattern)]

@@ -1,0 +1,1 @@
+"""Closed-form physics that knows no mesh: growth tensors and hyperelastic densities."""

@@ -1,0 +1,52 @@
+r"""Compressible neo-Hookean solid, per unit volume of the stress-free (grown) tissue.
+
+.. math:: W = \frac{\mu}{2} (J^{-2/3} I_1 - 3) + \frac{\kappa}{2} (J - 1)^2
+
+This is the meaning of the paper's Eq. 6, whose print is garbled; J and I1 are those of the elastic
+deformation gradient in three dimensions. A material is this one function: the density and its
+derivatives by the invariants, from which `gyrify.physics.isotropic` forms stress and tangent.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+
+def lame_parameters(young_modulus: float, poisson_ratio: float) -> tuple[float, float]:
+    """Shear and bulk modulus.
+
+    Parameters
+    ----------
+    young_modulus : float
+        E [Pa].
+    poisson_ratio : float
+        nu [-].
+
+    Returns
+    -------
+    mu, kappa : float
+        E / 2(1 + nu) and E / 3(1 - 2 nu) [Pa].
+    """
+    return young_modulus / (2.0 * (1.0 + poisson_ratio)), young_modulus / (3.0 * (1.0 - 2.0 * poisson_ratio))
+
+
+@njit(cache=True, inline="always")
+def density(I1, J, mu, kappa):  # type: ignore[no-untyped-def]
+    """W [Pa]."""
+    cube_root = np.cbrt(J)
+    return 0.5 * mu * (I1 / (cube_root * cube_root) - 3.0) + 0.5 * kappa * (J - 1.0) * (J - 1.0)
+
+
+@njit(cache=True, inline="always")
+def derivatives(I1, J, mu, kappa):  # type: ignore[no-untyped-def]
+    """W_1, W_J, W_11, W_1J, W_JJ [Pa]: derivatives of W by I1 and J."""
+    cube_root = np.cbrt(J)
+    power = mu / (cube_root * cube_root)
+    return (
+        0.5 * power,
+        -power * I1 / (3.0 * J) + kappa * (J - 1.0),
+        0.0,
+        -power / (3.0 * J),
+        5.0 / 9.0 * power * I1 / (J * J) + kappa,
+    )

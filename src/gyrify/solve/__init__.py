@@ -1,0 +1,1 @@
+"""Minimisation of the total energy along growth."""

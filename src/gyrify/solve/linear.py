@@ -1,0 +1,134 @@
+"""Sparse symmetric factorisation with inertia: one interface, two libraries."""
+
+from __future__ import annotations
+
+from typing import Literal, Protocol
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as sla
+
+from gyrify.errors import ConfigError, SolveError
+from gyrify.solve.types import FloatArray, IntArray
+
+SolverName = Literal["auto", "pardiso", "superlu"]
+
+
+class Factor(Protocol):
+    """A factorised symmetric matrix.
+
+    Attributes
+    ----------
+    n_negative : int
+        Number of negative pivots, that is of negative eigenvalues.
+    """
+
+    n_negative: int
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """Solution of A x = right, (n,) or (n, k)."""
+        ...
+
+
+class LinearSolver(Protocol):
+    """Factorises matrices that share a sparsity pattern.
+
+    Attributes
+    ----------
+    name : str
+        Name of the library.
+    """
+
+    name: str
+
+    def analyse(self, indptr: IntArray, indices: IntArray) -> None:
+        """Order a pattern, given as the upper triangle in compressed rows with a full diagonal."""
+        ...
+
+    def factorise(self, data: FloatArray) -> Factor:
+        """Factorise the matrix with these values on the analysed pattern."""
+        ...
+
+
+def linear_solver(name: SolverName = "auto") -> LinearSolver:
+    """Solver by name; ``auto`` is PARDISO where it is installed, else SuperLU.
+
+    Raises
+    ------
+    ConfigError
+        If PARDISO is asked for and not installed.
+    """
+    if name == "superlu":
+        return SuperLU()
+    try:
+        from gyrify.solve.pardiso import Pardiso
+
+        return Pardiso()
+    except ImportError as missing:
+        if name == "pardiso":
+            raise ConfigError(
+                "solver.linear_solver = 'pardiso', but PARDISO is not installed.",
+                "Install it with pip install 'gyrify[fast]' (x86-64 only), or choose 'superlu' or 'auto'.",
+            ) from missing
+        return SuperLU()
+
+
+class SuperLU:
+    """SciPy's SuperLU in symmetric mode: diagonal pivots only, so that their signs are the inertia.
+
+    The fill-reducing order is found once per pattern; later matrices are permuted beforehand.
+    """
+
+    name = "superlu"
+
+    def analyse(self, indptr: IntArray, indices: IntArray) -> None:
+        """See `LinearSolver`."""
+        n = indptr.size - 1
+        rows = np.repeat(np.arange(n), np.diff(indptr))
+        # A diagonally dominant matrix of this pattern: its order depends on the pattern alone.
+        off = rows != indices
+        ones = sp.coo_matrix((np.full(int(off.sum()), -1.0), (rows[off], indices[off])), shape=(n, n)).tocsc()
+        ones = ones + ones.T
+        dominant = (ones + sp.diags_array(1.0 - np.asarray(ones.sum(axis=0)).ravel())).tocsc()
+        order = _splu(dominant, "MMD_AT_PLUS_A").perm_c
+        rows, cols = order[rows], order[indices]
+        entry = np.arange(indices.size) + 1.0
+        lower_and_upper = sp.coo_matrix(
+            (np.concatenate([entry, entry[off]]), (np.concatenate([rows, cols[off]]), np.concatenate([cols, rows[off]]))),
+            shape=(n, n),
+        ).tocsc()
+        lower_and_upper.sort_indices()
+        self._order = order
+        self._source = lower_and_upper.data.astype(np.int64) - 1
+        self._matrix = lower_and_upper
+
+    def factorise(self, data: FloatArray) -> SuperLUFactor:
+        """See `LinearSolver`."""
+        self._matrix.data = data[self._source]
+        return SuperLUFactor(self._matrix, self._order)
+
+
+class SuperLUFactor:
+    """See `Factor`."""
+
+    def __init__(self, matrix: sp.csc_matrix, order: IntArray) -> None:
+        self._order = order
+        try:
+            self._lu = _splu(matrix, "NATURAL")
+        except RuntimeError as singular:
+            raise SolveError(f"SuperLU could not factorise the stiffness matrix ({singular}).") from singular
+        if not np.array_equal(self._lu.perm_r, self._lu.perm_c):
+            raise SolveError("SuperLU left the diagonal while pivoting, so that its inertia would be wrong.")
+        self.n_negative = int(np.count_nonzero(self._lu.U.diagonal() < 0.0))
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """See `Factor`."""
+        permuted = np.empty_like(right)
+        permuted[self._order] = right
+        return np.asarray(self._lu.solve(permuted)[self._order])
+
+
+def _splu(matrix: sp.csc_matrix, order: str) -> sla.SuperLU:
+    return sla.splu(
+        matrix, permc_spec=order, diag_pivot_thresh=0.0, relax=1, panel_size=8, options={"SymmetricMode": True}
+    )

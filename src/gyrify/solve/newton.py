@@ -1,0 +1,134 @@
+"""Newton's method for a minimum: exact Hessian, projected where its inertia is wrong, safe line search."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from gyrify.energy.term import Evaluation
+from gyrify.energy.total import TotalEnergy
+from gyrify.errors import SolveError
+from gyrify.solve.linear import Factor
+from gyrify.solve.result import Result, Solution, Stats
+from gyrify.solve.system import System
+from gyrify.solve.types import FloatArray, IntArray
+
+# Fraction of the linear decrease that a step must achieve, and the rounding of a sum over all cells.
+SUFFICIENT_DECREASE = 1e-4
+ROUNDING = 1e-14
+SMALLEST_STEP = 1e-9
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """When to stop.
+
+    Attributes
+    ----------
+    force : float
+        Largest nodal force accepted as zero [Pa mm].
+    max_iterations : int
+        Iterations after which the solve has failed.
+    """
+
+    force: float
+    max_iterations: int
+
+
+def minimise(
+    total: TotalEnergy, u: FloatArray, system: System, criterion: Criterion, candidates: Callable[[FloatArray], IntArray]
+) -> Solution:
+    """Minimise the total energy from a starting state.
+
+    Parameters
+    ----------
+    total : TotalEnergy
+        What to minimise.
+    u : (n_points, n_dim) float array
+        Admissible starting state [mm].
+    system : System
+        Linear system of the free degrees of freedom.
+    criterion : Criterion
+        When to stop.
+    candidates : callable
+        Couplings near a state, for the pattern.
+
+    Returns
+    -------
+    Solution
+    """
+    before = (system.factorizations, system.analyses)
+    value = total.value(u)
+    result, residual, iteration = Result.MAX_NEWTON, np.inf, 0
+    if not np.isfinite(value):
+        result = Result.INADMISSIBLE
+    while result is Result.MAX_NEWTON:
+        evaluations = total.evaluate(u, project_psd=False)
+        gradient = _free_gradient(evaluations, system)
+        residual = largest_force(gradient, system)
+        if residual <= criterion.force:
+            result = Result.CONVERGED
+        if result is Result.CONVERGED or iteration == criterion.max_iterations:
+            break
+        iteration += 1
+        try:
+            du = _direction(total, u, evaluations, gradient, system, candidates)
+        except SolveError:
+            result = Result.SINGULAR
+            break
+        step, value = _line_search(total, u, du, value, float(gradient @ du.ravel()[system.free]))
+        if step == 0.0:
+            result = Result.LINE_SEARCH if value == value else Result.BLOCKED
+        u = u + step * du
+    work = Stats(iteration, system.factorizations - before[0], system.analyses - before[1])
+    return Solution(u, result, residual, work)
+
+
+def largest_force(gradient: FloatArray, system: System) -> float:
+    """Largest Euclidean norm of the force on a free point [Pa mm]."""
+    forces = np.zeros(system.n_dofs)
+    forces[system.free] = gradient
+    return float(np.sqrt(np.square(forces.reshape(-1, system.n_dim)).sum(axis=1).max()))
+
+
+def _free_gradient(evaluations: Sequence[Evaluation], system: System) -> FloatArray:
+    total = np.zeros(system.n_dofs)
+    for evaluation in evaluations:
+        if evaluation.gradient is not None:
+            total += evaluation.gradient.ravel()
+    return total[system.free]
+
+
+def _direction(
+    total: TotalEnergy,
+    u: FloatArray,
+    evaluations: Sequence[Evaluation],
+    gradient: FloatArray,
+    system: System,
+    candidates: Callable[[FloatArray], IntArray],
+) -> FloatArray:
+    """Newton direction of the exact Hessian, or of the projected one where that is indefinite."""
+    factor: Factor = system.factorise(evaluations, lambda: candidates(u))
+    if factor.n_negative > 0:
+        factor = system.factorise(total.evaluate(u, project_psd=True), lambda: candidates(u))
+    du = np.zeros(system.n_dofs)
+    du[system.free] = -factor.solve(gradient)
+    return du.reshape(u.shape)
+
+
+def _line_search(
+    total: TotalEnergy, u: FloatArray, du: FloatArray, value: float, slope: float
+) -> tuple[float, float]:
+    """Step length and its energy: the first of a halving sequence that lowers the energy enough."""
+    step = total.max_step(u, du)
+    if step < SMALLEST_STEP:
+        return 0.0, np.nan
+    noise = ROUNDING * abs(value)
+    while step >= SMALLEST_STEP:
+        trial = total.value(u + step * du)
+        if trial <= value + SUFFICIENT_DECREASE * step * slope + noise:
+            return step, trial
+        step *= 0.5
+    return 0.0, value

@@ -1,0 +1,193 @@
+"""Quasi-static growth: increments that are accepted, or rejected and halved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Final, Protocol
+
+import numpy as np
+
+from gyrify.energy.total import TotalEnergy
+from gyrify.errors import SolveError
+from gyrify.solve.newton import Criterion, minimise
+from gyrify.solve.result import Result, Solution, Stats
+from gyrify.solve.system import System
+from gyrify.solve.types import FloatArray, IntArray
+
+# A nominal increment is this many ticks: growth time is an integer, so halving and resuming are exact.
+TICKS: Final = 2**20
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """An accepted increment, with all that the next one depends on.
+
+    Attributes
+    ----------
+    index : int
+        Number of the increment; 0 is the reference state.
+    position : int
+        Growth time in ticks.
+    u : (n_points, n_dim) float array
+        Displacement [mm].
+    span : int
+        Ticks of the increment that led here.
+    u_before : (n_points, n_dim) float array
+        Displacement at its start [mm].
+    next_span : int
+        Ticks of the increment to try next.
+    couplings : (n_pairs, 2) int array
+        Point pairs in the sparsity pattern because of contact.
+    residual : float
+        Largest nodal force [Pa mm].
+    stats : Stats
+        Work since the start of the run.
+    """
+
+    index: int
+    position: int
+    u: FloatArray
+    span: int
+    u_before: FloatArray
+    next_span: int
+    couplings: IntArray
+    residual: float
+    stats: Stats
+
+    @staticmethod
+    def reference(n_points: int, n_dim: int) -> State:
+        """Undeformed state at growth time zero."""
+        zero = np.zeros((n_points, n_dim))
+        return State(0, 0, zero, TICKS, zero, TICKS, np.empty((0, 2), dtype=np.int64), 0.0, Stats())
+
+
+class Problem(Protocol):
+    """What the driver needs to know of the tissue."""
+
+    def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:
+        """Total energy at a fraction of the growth duration, for an increment from a state."""
+        ...
+
+    def system(self, couplings: IntArray) -> System:
+        """Linear system with couplings in its pattern."""
+        ...
+
+    def candidates(self, u: FloatArray) -> IntArray:
+        """Point pairs that contact may couple soon."""
+        ...
+
+    def is_path_admissible(self, u: FloatArray, u_end: FloatArray) -> bool:
+        """Whether the contour crosses itself nowhere on the straight path between two states."""
+        ...
+
+
+@dataclass(frozen=True)
+class Stepping:
+    """How growth is divided into increments.
+
+    Attributes
+    ----------
+    increments : int
+        Nominal number of increments.
+    min_increment : float
+        Smallest increment, as a fraction of the duration.
+    criterion : Criterion
+        When an increment has converged.
+    """
+
+    increments: int
+    min_increment: float
+    criterion: Criterion
+
+    @property
+    def end(self) -> int:
+        """Final growth time in ticks."""
+        return self.increments * TICKS
+
+    @property
+    def smallest_span(self) -> float:
+        """Smallest increment in ticks, a whole number of them at least."""
+        return max(1.0, self.min_increment * self.end)
+
+
+def grow(problem: Problem, stepping: Stepping, state: State) -> Iterator[State]:
+    """Accepted states after ``state``, up to the end of growth.
+
+    Parameters
+    ----------
+    problem : Problem
+        The tissue.
+    stepping : Stepping
+        How growth is divided.
+    state : State
+        Where to start: the reference state, or a stored one.
+
+    Yields
+    ------
+    State
+
+    Raises
+    ------
+    SolveError
+        If an increment fails at the smallest size; the message names the reason.
+    """
+    system = problem.system(state.couplings)
+    while state.position < stepping.end:
+        state = _advance(problem, stepping, state, system)
+        yield state
+
+
+def _advance(problem: Problem, stepping: Stepping, state: State, system: System) -> State:
+    """Next accepted state: try the planned span, halve it until it is accepted."""
+    span, work = min(state.next_span, stepping.end - state.position), state.stats
+    while True:
+        solution = _attempt(problem, stepping, state, span, system)
+        work = work + solution.stats
+        if solution.result is Result.CONVERGED:
+            break
+        work = replace(work, rejected=work.rejected + 1)
+        span //= 2
+        if span < stepping.smallest_span:
+            time = state.position / stepping.end
+            raise SolveError(
+                f"Growth stopped at {time:.4%} of the duration: {solution.result.message} "
+                f"(residual {solution.residual:.3g} Pa mm, wanted {stepping.criterion.force:.3g}).",
+                solution.result.advice,
+            )
+    position = state.position + span
+    return State(
+        index=state.index + 1,
+        position=position,
+        u=solution.u,
+        span=span,
+        u_before=state.u,
+        next_span=_next_span(position, span),
+        couplings=system.couplings,
+        residual=solution.residual,
+        stats=work,
+    )
+
+
+def _next_span(position: int, span: int) -> int:
+    """Twice the span where that keeps to the grid of the nominal increments, at most one of them."""
+    doubled = 2 * span
+    return doubled if doubled <= TICKS and position % doubled == 0 else span
+
+
+def _attempt(problem: Problem, stepping: Stepping, state: State, span: int, system: System) -> Solution:
+    """One increment, from the better of the last state and its extrapolation."""
+    start_fraction, fraction = state.position / stepping.end, (state.position + span) / stepping.end
+    total = problem.energy(fraction, state, start_fraction)
+    guess = _predict(total, state, span)
+    solution = minimise(total, guess, system, stepping.criterion, problem.candidates)
+    if solution.result is Result.CONVERGED and not problem.is_path_admissible(state.u, solution.u):
+        return replace(solution, result=Result.CROSSING_PATH)
+    return solution
+
+
+def _predict(total: TotalEnergy, state: State, span: int) -> FloatArray:
+    """Linear extrapolation as far as it is admissible, if it lowers the energy."""
+    step = (state.u - state.u_before) * (span / state.span)
+    guess = state.u + total.max_step(state.u, step) * step
+    return guess if total.value(guess) < total.value(state.u) else state.u

@@ -1,0 +1,82 @@
+"""Sparse linear system of the free degrees of freedom, on a pattern that only ever grows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from gyrify.energy.term import Evaluation, Pattern
+from gyrify.energy.total import FreePattern
+from gyrify.solve.linear import Factor, LinearSolver
+from gyrify.solve.types import FloatArray, IntArray
+
+
+class System:
+    """Assembles and factorises the Hessian of a sum of terms.
+
+    The pattern is that of the cells and of a set of coupled point pairs (contact). A new coupling brings
+    all nearby candidates in at once, so that the next ones need no new symbolic analysis.
+
+    Parameters
+    ----------
+    free : (n_free,) int array
+        Free degrees of freedom.
+    n_dofs, n_dim : int
+        Number of all degrees of freedom, and of those per point.
+    base : Pattern
+        Pattern of the cells.
+    solver : LinearSolver
+        Does the factorisation.
+    couplings : (n_pairs, 2) int array
+        Coupled pairs of points to start with.
+    """
+
+    def __init__(
+        self, free: IntArray, n_dofs: int, n_dim: int, base: Pattern, solver: LinearSolver, couplings: IntArray
+    ) -> None:
+        self.free, self.n_dofs, self.n_dim = free, n_dofs, n_dim
+        self.solver = solver
+        self.analyses = self.factorizations = 0
+        self._base = base
+        self._set_couplings(couplings)
+
+    def _set_couplings(self, couplings: IntArray) -> None:
+        self.couplings = couplings
+        rows, cols = self._coupling_entries(couplings)
+        self.pattern = FreePattern(
+            self.free,
+            self.n_dofs,
+            np.concatenate([self._base.rows, rows]),
+            np.concatenate([self._base.cols, cols]),
+        )
+        self.solver.analyse(self.pattern.indptr, self.pattern.cols)
+        self.analyses += 1
+
+    def _coupling_entries(self, couplings: IntArray) -> tuple[IntArray, IntArray]:
+        """Upper-triangle entries of every pair of coupled points."""
+        low, high = couplings.min(axis=1), couplings.max(axis=1)
+        axis = np.arange(self.n_dim)
+        shape = (couplings.shape[0], self.n_dim, self.n_dim)
+        rows = np.broadcast_to(low[:, None, None] * self.n_dim + axis[:, None], shape)
+        cols = np.broadcast_to(high[:, None, None] * self.n_dim + axis[None, :], shape)
+        return rows.ravel(), cols.ravel()
+
+    def factorise(self, evaluations: Sequence[Evaluation], candidates: Callable[[], IntArray]) -> Factor:
+        """Factor of the summed Hessian; ``candidates`` gives couplings to add where the pattern is too small."""
+        hessians = [e.hessian for e in evaluations if e.hessian is not None]
+        if not all(self.pattern.holds(h.pattern) for h in hessians):
+            needed = np.concatenate([_pairs(h.pattern, self.n_dim) for h in hessians if h.pattern is not self._base])
+            merged = np.concatenate([self.couplings, candidates(), needed])
+            self._set_couplings(np.unique(np.sort(merged, axis=1), axis=0))
+        data = np.zeros(self.pattern.rows.size)
+        for hessian in hessians:
+            self.pattern.add(hessian.pattern, hessian.values, data)
+        self.factorizations += 1
+        return self.solver.factorise(data)
+
+
+def _pairs(pattern: Pattern, n_dim: int) -> IntArray:
+    """(n_pairs, 2) different points that a pattern couples."""
+    pairs = np.stack([pattern.rows // n_dim, pattern.cols // n_dim], axis=1)
+    return np.unique(pairs[pairs[:, 0] != pairs[:, 1]], axis=0)
