@@ -84,22 +84,24 @@ class SecondVariation:
         return cls(state, _quadratic_forms(fixed, turning, tangent), root)
 
     def matrix(self, number: int) -> FloatArray:
-        """(n_unknowns, n_unknowns) whitened second variation [Pa/mm^2] of mode `number`."""
+        """Whitened second variation [Pa/mm^2] of mode `number`; mode 0 has radial unknowns only."""
+        size = len(self.root) * (1 if number == 0 else 2)
         matrix: FloatArray = self.powers[0] + number * self.powers[1] + number**2 * self.powers[2]
-        return matrix
+        return matrix[:size, :size]
 
     def lowest(self, number: int) -> float:
-        """Lowest eigenvalue [Pa/mm^2] of mode `number`; mode 0 is radial only."""
-        size = len(self.root) if number == 0 else 2 * len(self.root)
-        matrix = self.matrix(number)[:size, :size]
-        return float(eigh(matrix, eigvals_only=True, subset_by_index=[0, 0], check_finite=False)[0])
+        """Lowest eigenvalue [Pa/mm^2] of mode `number`."""
+        values = eigh(self.matrix(number), eigvals_only=True, subset_by_index=[0, 0], check_finite=False)
+        return float(values[0])
 
     def mode(self, number: int) -> Mode:
         """The softest increment of mode `number`."""
         value, vector = eigh(self.matrix(number), subset_by_index=[0, 0])
-        fields = solve_triangular(self.root.T, vector.reshape(2, -1).T)
-        fields = np.vstack([np.zeros(2), fields / fields.flat[np.argmax(np.abs(fields))]])
-        return Mode(number, float(value[0]), self.state.line.nodes, fields[:, 0], fields[:, 1])
+        components = vector.reshape(-1, len(self.root))
+        fields = np.zeros((2, len(self.root) + 1))
+        fields[: len(components), 1:] = solve_triangular(self.root.T, components.T).T
+        radial, circumferential = fields / fields.flat[np.argmax(np.abs(fields))]
+        return Mode(number, float(value[0]), self.state.line.nodes, radial, circumferential)
 
 
 def _quadratic_forms(fixed: FloatArray, turning: FloatArray, tangent: FloatArray) -> FloatArray:

@@ -69,7 +69,7 @@ def coarse_modes(annulus: Annulus) -> list[int]:
     last = int(np.ceil(_SHORTEST * annulus.outer_radius / annulus.cortical_thickness))
     modes = [0, 1, 2]
     while modes[-1] < last:
-        modes.append(max(modes[-1] + 1, round(modes[-1] * _MODE_SPACING)))
+        modes.append(min(last, max(modes[-1] + 1, round(modes[-1] * _MODE_SPACING))))
     return modes
 
 
@@ -98,7 +98,7 @@ def stability_margin(state: BaseState) -> Margin:
     best = min(coarse, key=margin)
     step = max(1, round(best * (_MODE_SPACING - 1.0)) // 2)
     while best > 1:
-        better = min((best - step, best, best + step), key=margin)
+        better = min((best - step, best, min(best + step, coarse[-1])), key=margin)
         if better == best and step == 1:
             break
         best, step = better, max(1, step // 2) if better == best else step

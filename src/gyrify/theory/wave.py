@@ -16,8 +16,8 @@ FloatArray = NDArray[np.float64]
 # H = _ACROSS q' + _ALONG q with q = (U, V)
 _ACROSS = np.array([[1.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 1.0]])
 _ALONG = np.array([[0.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, 0.0]])
-# A film is passed in steps of this scaled thickness, lest the growing exponentials drown the others.
-_STEP = 1.0
+# Largest growth exponent of one step through a film, lest the growing exponentials drown the others.
+_STEP = 4.0
 
 
 def state_matrix(tangent: FloatArray, incompressible_stretch: ArrayLike | None = None) -> FloatArray:
@@ -91,7 +91,8 @@ def layered_stiffness(matrix: FloatArray, below: FloatArray, scaled_thickness: A
         Z [Pa], symmetric. It jumps through minus infinity where the film is unstable even if its top is held.
     """
     thickness = np.asarray(scaled_thickness, dtype=np.float64)
-    steps = max(1, int(np.ceil(np.max(thickness) / _STEP)))
+    rates = np.max(np.abs(np.linalg.eigvals(matrix)), axis=-1)
+    steps = max(1, int(np.ceil(np.max(rates * thickness) / _STEP)))
     passage = expm(matrix * (thickness / steps)[..., None, None])
     stiffness = np.broadcast_to(below, (*passage.shape[:-2], 2, 2))
     for _ in range(steps):
