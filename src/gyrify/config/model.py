@@ -16,7 +16,7 @@ from gyrify.config.faults import raise_faults, sections, unknown_key
 from gyrify.config.physics_sections import Contact, Dissipation, Geometry, Growth, Material, MeshSettings
 from gyrify.config.preset_files import preset_data
 from gyrify.config.run_sections import Limits, Metrics, Output, SchemaVersion, Solver, Stability
-from gyrify.config.words import extra, show
+from gyrify.config.words import extra, shorten, show
 
 NOT_HASHED: Final = frozenset({"output", "limits"})
 
@@ -145,7 +145,8 @@ class Config(Section):
 
 def read_tables(path: str | Path) -> dict[str, Any]:
     """Read the tables of a TOML file without checking what they mean."""
-    return toml_text.parse(toml_text.read_text(Path(path)), f"The file {path}")
+    name = f"The configuration file {shorten(str(path), toml_text.MAX_PATH)}"
+    return toml_text.parse(toml_text.read_text(Path(path)), name)
 
 
 def merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:

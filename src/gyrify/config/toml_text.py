@@ -13,6 +13,8 @@ from gyrify.config.words import shorten
 from gyrify.errors import ConfigError
 
 MAX_BYTES: Final = 64 * 1024
+MAX_PATH: Final = 240
+MAX_REASON: Final = 120
 
 
 def read_text(path: Path) -> str:
@@ -33,7 +35,7 @@ def read_text(path: Path) -> str:
     ConfigError
         When the file is missing, unreadable, too large or not UTF-8.
     """
-    name = f"The configuration file {shorten(str(path))}"
+    name = f"The configuration file {shorten(str(path), MAX_PATH)}"
     try:
         if not stat.S_ISREG(path.stat().st_mode):
             raise ConfigError(f"{name} is not a regular file.", "Name a TOML file.")
@@ -75,8 +77,10 @@ def parse(text: str, name: str = "The configuration") -> dict[str, Any]:
         return tomllib.loads(text)
     except RecursionError:
         reason = "it is nested too deeply"
-    except ValueError as error:
-        reason = shorten(str(error).replace("\n", " ")) if len(str(error)) > 200 else str(error)
+    except tomllib.TOMLDecodeError as error:
+        reason = shorten(" ".join(str(error).split()), MAX_REASON)
+    except ValueError:
+        reason = "it holds a number of too many digits"
     file_hint = (
         " To read a file, use Config.load." if text.strip().endswith(".toml") and "\n" not in text else ""
     )

@@ -12,9 +12,9 @@ from pydantic.fields import FieldInfo
 MAX_SHOWN: Final = 60
 
 
-def shorten(text: str) -> str:
-    """Return a text fit for one line: at most 60 characters, nothing unprintable."""
-    short = text if len(text) <= MAX_SHOWN else text[: MAX_SHOWN - 1] + "…"
+def shorten(text: str, length: int = MAX_SHOWN) -> str:
+    """Return a text fit for one line: not too long (60 characters by default), nothing unprintable."""
+    short = text if len(text) <= length else text[: length - 1] + "…"
     return short if short.isprintable() else repr(short)[1:-1]
 
 
@@ -96,7 +96,7 @@ def allowed(field: FieldInfo) -> str:
 
 def _range(limits: Mapping[str, float]) -> str:
     """Return bounds in words, with a leading space."""
-    shown = {name: f"{value:.15g}" for name, value in limits.items()}
+    shown = {name: f"{v:g}" if float(f"{v:g}") == v else repr(v) for name, v in limits.items()}
     if {"ge", "le"} <= shown.keys():
         return f" from {shown['ge']} to {shown['le']}"
     words = {"gt": "above", "ge": "at least", "lt": "below", "le": "at most"}
