@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 import tomllib
@@ -182,7 +183,7 @@ def test_nothing_heavy_is_imported(arguments: list[str]) -> None:
 
 def test_ascii_terminal() -> None:
     command = [sys.executable, "-m", "gyrify.cli", "config", "check", "--set", "geometry.area=0"]
-    environment = {"PYTHONIOENCODING": "ascii", "PATH": ""}
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
     done = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
     assert done.returncode == 2
     assert "mm\\xb2" in done.stderr
