@@ -39,5 +39,9 @@ class SolveError(GyrifyError):
     """A run that could not be brought to its final growth time."""
 
 
+class LimitReachedError(GyrifyError):
+    """A limit on wall time or memory that the user has set."""
+
+
 class HistoryError(GyrifyError):
     """A stored run that cannot be read, resumed or overwritten."""

@@ -38,7 +38,12 @@ class Criterion:
 
 
 def minimise(
-    total: TotalEnergy, u: FloatArray, system: System, criterion: Criterion, candidates: Callable[[FloatArray], IntArray]
+    total: TotalEnergy,
+    u: FloatArray,
+    system: System,
+    criterion: Criterion,
+    candidates: Callable[[FloatArray], IntArray],
+    watch: Callable[[], None] = lambda: None,
 ) -> Solution:
     """Minimise the total energy from a starting state.
 
@@ -54,6 +59,8 @@ def minimise(
         When to stop.
     candidates : callable
         Couplings near a state, for the pattern.
+    watch : callable
+        Called at each iteration; may raise to stop.
 
     Returns
     -------
@@ -65,6 +72,7 @@ def minimise(
     if not np.isfinite(value):
         result = Result.INADMISSIBLE
     while result is Result.MAX_NEWTON:
+        watch()
         evaluations = total.evaluate(u, project_psd=False)
         gradient = _free_gradient(evaluations, system)
         residual = largest_force(gradient, system)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Final, Protocol
 
@@ -111,7 +111,9 @@ class Stepping:
         return max(1.0, self.min_increment * self.end)
 
 
-def grow(problem: Problem, stepping: Stepping, state: State) -> Iterator[State]:
+def grow(
+    problem: Problem, stepping: Stepping, state: State, watch: Callable[[], None] = lambda: None
+) -> Iterator[State]:
     """Accepted states after ``state``, up to the end of growth.
 
     Parameters
@@ -122,6 +124,8 @@ def grow(problem: Problem, stepping: Stepping, state: State) -> Iterator[State]:
         How growth is divided.
     state : State
         Where to start: the reference state, or a stored one.
+    watch : callable
+        Called at each Newton iteration; may raise to stop.
 
     Yields
     ------
@@ -134,15 +138,17 @@ def grow(problem: Problem, stepping: Stepping, state: State) -> Iterator[State]:
     """
     system = problem.system(state.couplings)
     while state.position < stepping.end:
-        state = _advance(problem, stepping, state, system)
+        state = _advance(problem, stepping, state, system, watch)
         yield state
 
 
-def _advance(problem: Problem, stepping: Stepping, state: State, system: System) -> State:
+def _advance(
+    problem: Problem, stepping: Stepping, state: State, system: System, watch: Callable[[], None]
+) -> State:
     """Next accepted state: try the planned span, halve it until it is accepted."""
     span, work = min(state.next_span, stepping.end - state.position), state.stats
     while True:
-        solution = _attempt(problem, stepping, state, span, system)
+        solution = _attempt(problem, stepping, state, span, system, watch)
         work = work + solution.stats
         if solution.result is Result.CONVERGED:
             break
@@ -175,12 +181,14 @@ def _next_span(position: int, span: int) -> int:
     return doubled if doubled <= TICKS and position % doubled == 0 else span
 
 
-def _attempt(problem: Problem, stepping: Stepping, state: State, span: int, system: System) -> Solution:
+def _attempt(
+    problem: Problem, stepping: Stepping, state: State, span: int, system: System, watch: Callable[[], None]
+) -> Solution:
     """One increment, from the better of the last state and its extrapolation."""
     start_fraction, fraction = state.position / stepping.end, (state.position + span) / stepping.end
     total = problem.energy(fraction, state, start_fraction)
     guess = _predict(total, state, span)
-    solution = minimise(total, guess, system, stepping.criterion, problem.candidates)
+    solution = minimise(total, guess, system, stepping.criterion, problem.candidates, watch)
     if solution.result is Result.CONVERGED and not problem.is_path_admissible(state.u, solution.u):
         return replace(solution, result=Result.CROSSING_PATH)
     return solution

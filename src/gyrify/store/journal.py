@@ -1,0 +1,225 @@
+"""The journal of a run: an SQLite database with one committed transaction per accepted increment.
+
+It holds the full float64 state and all that the next increment depends on, so that a run killed at any
+moment continues from its last accepted increment to the same bytes. Write-ahead logging with
+``synchronous = NORMAL`` survives the death of the process at any instruction; after a loss of power the
+last increments may be gone, never damaged.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import astuple
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from gyrify.errors import HistoryError
+from gyrify.solve.quasistatic import State
+from gyrify.solve.result import Stats
+from gyrify.solve.types import FloatArray
+
+FORMAT: Final = 1
+_APPLICATION_ID: Final = 0x67797269  # "gyri"
+_SCHEMA: Final = """
+CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE increments (
+    number INTEGER PRIMARY KEY,
+    position INTEGER NOT NULL,
+    span INTEGER NOT NULL,
+    next_span INTEGER NOT NULL,
+    residual REAL NOT NULL,
+    newton_iterations INTEGER NOT NULL,
+    factorizations INTEGER NOT NULL,
+    analyses INTEGER NOT NULL,
+    rejected INTEGER NOT NULL,
+    wall_s REAL NOT NULL,
+    displacement BLOB NOT NULL,
+    couplings BLOB NOT NULL,
+    digest BLOB NOT NULL
+);
+"""
+
+
+class Journal:
+    """Accepted increments of one run.
+
+    Parameters
+    ----------
+    connection : sqlite3.Connection
+        Open database of the right format; use `create` or `open`.
+    name : str
+        What to call it in messages.
+    """
+
+    def __init__(self, connection: sqlite3.Connection, name: str) -> None:
+        self._connection = connection
+        self.name = name
+
+    @staticmethod
+    def create(path: Path | None, meta: dict[str, str]) -> Journal:
+        """New journal in a file that does not exist yet, or in memory.
+
+        Raises
+        ------
+        HistoryError
+            If the file cannot be written.
+        """
+        name = "in memory" if path is None else str(path)
+        with _translated(name):
+            connection = sqlite3.connect(":memory:" if path is None else path, isolation_level=None)
+            connection.execute("PRAGMA journal_mode = WAL")
+            connection.execute("PRAGMA synchronous = NORMAL")
+            with _transaction(connection):
+                for statement in filter(str.strip, _SCHEMA.split(";")):
+                    connection.execute(statement)
+                connection.executemany("INSERT INTO meta VALUES (?, ?)", meta.items())
+                connection.execute(f"PRAGMA application_id = {_APPLICATION_ID}")
+                connection.execute(f"PRAGMA user_version = {FORMAT}")
+        return Journal(connection, name)
+
+    @staticmethod
+    def open(path: Path, *, read_only: bool = False) -> Journal:
+        """Existing journal.
+
+        Raises
+        ------
+        HistoryError
+            If there is none, it is damaged, or of another format.
+        """
+        if not path.is_file():
+            raise HistoryError(f"There is no journal at {path}.", "Name a folder that `gyrify run` has written.")
+        with _translated(str(path)):
+            connection = sqlite3.connect(path.resolve().as_uri() + "?mode=rw", uri=True, isolation_level=None)
+            if read_only:
+                connection.execute("PRAGMA query_only = ON")
+            (application,) = connection.execute("PRAGMA application_id").fetchone()
+            (version,) = connection.execute("PRAGMA user_version").fetchone()
+        if application != _APPLICATION_ID:
+            raise HistoryError(f"{path} is not a gyrify journal.", "Name a folder that `gyrify run` has written.")
+        if version != FORMAT:
+            raise HistoryError(
+                f"{path} has journal format {version}; this version of gyrify reads format {FORMAT}.",
+                "Use the version of gyrify that wrote it (see `versions` in summary.json), or run again.",
+            )
+        if not read_only:
+            connection.execute("PRAGMA synchronous = NORMAL")
+        return Journal(connection, str(path))
+
+    def close(self) -> None:
+        """Close the database; its write-ahead log is folded in."""
+        self._connection.close()
+
+    def meta(self, key: str, default: str = "") -> str:
+        """A recorded fact, such as the configuration or the status."""
+        with _translated(self.name):
+            row = self._connection.execute("SELECT value FROM meta WHERE key = ?", (key,)).fetchone()
+        return default if row is None else str(row[0])
+
+    def set_meta(self, **values: str) -> None:
+        """Record facts in one transaction."""
+        with _translated(self.name), _transaction(self._connection):
+            self._connection.executemany("INSERT OR REPLACE INTO meta VALUES (?, ?)", values.items())
+
+    def append(self, state: State, wall_s: float) -> None:
+        """Record an accepted increment in one transaction."""
+        u = np.ascontiguousarray(state.u, dtype="<f8").tobytes()
+        couplings = np.ascontiguousarray(state.couplings, dtype="<i4").tobytes()
+        numbers = (state.index, state.position, state.span, state.next_span, state.residual, *astuple(state.stats))
+        row = (*numbers, wall_s, u, couplings, _digest(numbers, u, couplings))
+        with _translated(self.name), _transaction(self._connection):
+            self._connection.execute(f"INSERT INTO increments VALUES ({','.join('?' * len(row))})", row)
+
+    def __len__(self) -> int:
+        with _translated(self.name):
+            return int(self._connection.execute("SELECT count(*) FROM increments").fetchone()[0])
+
+    def column(self, name: str) -> list[Any]:
+        """One number of every increment, in order."""
+        with _translated(self.name):
+            return [row[0] for row in self._connection.execute(f"SELECT {name} FROM increments ORDER BY number")]
+
+    def displacement(self, number: int) -> FloatArray:
+        """(n_points, 2) displacement of an increment [mm]."""
+        return _displacement(self._row(number)[10])
+
+    def state(self, number: int) -> State:
+        """Everything that the increment after ``number`` depends on."""
+        row = self._row(number)
+        u = _displacement(row[10])
+        return State(
+            index=number,
+            position=row[1],
+            u=u,
+            span=row[2],
+            u_before=self.displacement(number - 1) if number > 0 else np.zeros_like(u),
+            next_span=row[3],
+            couplings=np.frombuffer(row[11], dtype="<i4").astype(np.int64).reshape(-1, 2),
+            residual=row[4],
+            stats=Stats(*row[5:9]),
+        )
+
+    @property
+    def result_hash(self) -> str:
+        """SHA-256 (hexadecimal) of growth times and displacements of all increments, in order."""
+        digest = hashlib.sha256()
+        query = "SELECT position, displacement FROM increments ORDER BY number"
+        with _translated(self.name):
+            for position, displacement in self._connection.execute(query):
+                digest.update(int(position).to_bytes(8, "little"))
+                digest.update(displacement)
+        return digest.hexdigest()
+
+    def _row(self, number: int) -> tuple[Any, ...]:
+        with _translated(self.name):
+            query = "SELECT * FROM increments WHERE number = ?"
+            row: tuple[Any, ...] | None = self._connection.execute(query, (number,)).fetchone()
+        if row is None:
+            raise HistoryError(f"The journal {self.name} has no increment {number}.", f"It holds {len(self)}.")
+        if _digest(row[:9], row[10], row[11]) != row[12]:
+            raise HistoryError(f"Increment {number} in {self.name} is damaged: its checksum differs.", _RERUN)
+        return row
+
+
+_RERUN: Final = "Restore the file from a copy, or run again with --overwrite."
+
+
+def _digest(numbers: tuple[Any, ...], u: bytes, couplings: bytes) -> bytes:
+    return hashlib.blake2b(repr(numbers).encode() + u + couplings, digest_size=16).digest()
+
+
+def _displacement(blob: bytes) -> FloatArray:
+    return np.frombuffer(blob, dtype="<f8").astype(np.float64).reshape(-1, 2)
+
+
+@contextmanager
+def _transaction(connection: sqlite3.Connection) -> Iterator[None]:
+    connection.execute("BEGIN IMMEDIATE")
+    try:
+        yield
+    except BaseException:
+        connection.execute("ROLLBACK")
+        raise
+    connection.execute("COMMIT")
+
+
+@contextmanager
+def _translated(name: str) -> Iterator[None]:
+    """Turn database faults into one sentence with advice."""
+    try:
+        yield
+    except sqlite3.DatabaseError as error:
+        text = str(error)
+        if "full" in text:
+            advice = "Free space on the disk, then continue with `gyrify resume`."
+        elif "readonly" in text or "unable to open" in text:
+            advice = "Choose a folder that you may write to."
+        elif "locked" in text:
+            advice = "Another process is using this run; wait for it, or stop it."
+        else:
+            advice = _RERUN
+        raise HistoryError(f"The journal {name} could not be used: {text}.", advice) from error
