@@ -1,0 +1,37 @@
+"""Metrics of a folded contour: plain functions of arrays of positions in mm."""
+
+from gyrify.metrics.calibration import growth_ratio_from_scaling, growth_ratio_from_volumes, length_increase
+from gyrify.metrics.contour import closing_outline, self_intersecting
+from gyrify.metrics.folds import (
+    Folds,
+    LowModeShape,
+    find_folds,
+    fold_wavelength,
+    low_mode_shape,
+    periodic_extrema,
+    sulcal_depth,
+)
+from gyrify.metrics.gap import min_gap
+from gyrify.metrics.gyrification import gyrification_index
+from gyrify.metrics.measure import Measures, measure
+from gyrify.metrics.thickness import cortical_thickness
+
+__all__ = [
+    "Folds",
+    "LowModeShape",
+    "Measures",
+    "closing_outline",
+    "cortical_thickness",
+    "find_folds",
+    "fold_wavelength",
+    "growth_ratio_from_scaling",
+    "growth_ratio_from_volumes",
+    "gyrification_index",
+    "length_increase",
+    "low_mode_shape",
+    "measure",
+    "min_gap",
+    "periodic_extrema",
+    "self_intersecting",
+    "sulcal_depth",
+]

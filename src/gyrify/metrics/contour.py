@@ -1,0 +1,180 @@
+"""Closed contours as plain arrays: outline of the tissue, its offset and its closing, distances to a line."""
+
+from __future__ import annotations
+
+import math
+from typing import TypeVar
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+
+from gyrify.errors import ConfigError, MeshError
+
+FloatArray = NDArray[np.float64]
+Scalar = TypeVar("Scalar", bound=np.generic)
+
+# Segments per quarter circle of an offset curve: its length is then true to 1e-4 of its arcs.
+QUARTER_SEGMENTS = 32
+
+# Entries of a dense distance matrix handled at once: the temporaries stay in the cache.
+BLOCK = 16_000
+
+
+def as_contour(contour: ArrayLike) -> FloatArray:
+    """Return the vertices of a closed contour as an array, the repeated last vertex dropped.
+
+    Parameters
+    ----------
+    contour : (n, 2) array_like
+        Vertices in order [mm], in either direction, with or without the first one repeated at the end.
+
+    Returns
+    -------
+    (n, 2) float array
+
+    Raises
+    ------
+    MeshError
+        If it is not a list of at least three finite points of the plane.
+    """
+    vertices = np.ascontiguousarray(contour, dtype=np.float64)
+    if vertices.ndim == 2 and len(vertices) > 1 and np.array_equal(vertices[0], vertices[-1]):
+        vertices = vertices[:-1]
+    if vertices.ndim != 2 or vertices.shape[1] != 2 or len(vertices) < 3:
+        raise MeshError(
+            f"A contour needs an (n, 2) array of three or more vertices, not shape {np.shape(contour)}.",
+            "Pass the deformed positions of the contour points.",
+        )
+    if not np.isfinite(vertices).all():
+        raise MeshError("The contour has vertices that are not finite.", "Check the state it was taken from.")
+    return vertices
+
+
+def require_positive(name: str, value: float, unit: str = "mm") -> None:
+    """Raise `ConfigError` unless ``value`` is a positive finite number."""
+    if not (math.isfinite(value) and value > 0):
+        raise ConfigError(
+            f"{name} = {value} {unit} is out of range: it must be > 0.", f"Give {name} in {unit}."
+        )
+
+
+def self_intersecting(contour: ArrayLike) -> bool:
+    """Whether a closed contour crosses or touches itself.
+
+    Parameters
+    ----------
+    contour : (n, 2) array_like
+        Vertices in order [mm].
+
+    Returns
+    -------
+    bool
+
+    Raises
+    ------
+    MeshError
+        If the contour is malformed.
+    """
+    return not shapely.linearrings(as_contour(contour)).is_simple
+
+
+def filled(contour: FloatArray) -> shapely.Polygon:
+    """Return all that a closed contour encloses, without holes, as one polygon.
+
+    A simple contour is its own boundary. Where it crosses itself, every enclosed face counts as tissue and
+    the outline runs along the outside of their union: overlapping sulcal walls are hidden in it.
+    """
+    ring = shapely.linearrings(contour)
+    if ring.is_simple:
+        return shapely.Polygon(ring)
+    faces = shapely.polygonize([shapely.node(ring)])
+    return shapely.Polygon(_largest(shapely.union_all(faces.geoms)).exterior)
+
+
+def offset_outline(polygon: shapely.Polygon, radius: float) -> shapely.LinearRing:
+    """Return the outer boundary of everything within ``radius`` [mm] of the polygon."""
+    return polygon.buffer(radius, quad_segs=QUARTER_SEGMENTS).exterior
+
+
+def closing_outline(contour: ArrayLike, closing_radius: float = 10.0) -> FloatArray:
+    """Outline of the morphological closing of the tissue: sulci bridged by arcs of the closing radius.
+
+    Parameters
+    ----------
+    contour : (n, 2) array_like
+        Vertices of the closed contour in order [mm].
+    closing_radius : float
+        Radius of the disc that rolls around the tissue [mm], > 0.
+
+    Returns
+    -------
+    (m, 2) float array
+        Vertices of the outline [mm], the first one not repeated.
+
+    Raises
+    ------
+    MeshError
+        If the contour is malformed.
+    ConfigError
+        If the radius is not positive.
+    """
+    require_positive("closing_radius", closing_radius)
+    dilated = shapely.Polygon(offset_outline(filled(as_contour(contour)), closing_radius))
+    closed = dilated.buffer(-closing_radius, quad_segs=QUARTER_SEGMENTS)
+    return ring_vertices(_largest(closed).exterior)
+
+
+def resample(contour: FloatArray, samples: int) -> FloatArray:
+    """Return ``samples`` points at equal arc length along a closed polygon, starting at its first vertex."""
+    ring = np.concatenate([contour, contour[:1]])
+    arc = np.concatenate([[0.0], np.cumsum(edge_lengths(contour))])
+    at = np.arange(samples) * (arc[-1] / samples)
+    return np.column_stack([np.interp(at, arc, ring[:, 0]), np.interp(at, arc, ring[:, 1])])
+
+
+def ring_vertices(ring: shapely.LinearRing) -> FloatArray:
+    """Return the (n, 2) vertices of a ring, the first one not repeated."""
+    vertices: FloatArray = shapely.get_coordinates(ring)[:-1]
+    return vertices
+
+
+def following(values: NDArray[Scalar]) -> NDArray[Scalar]:
+    """Return ``np.roll(values, -1, axis=0)``, the next entry along a closed contour, several times faster."""
+    return np.concatenate([values[1:], values[:1]])
+
+
+def edge_lengths(contour: FloatArray) -> FloatArray:
+    """Return the (n,) lengths of the edges of a closed polygon; edge i starts at vertex i."""
+    edges = following(contour) - contour
+    lengths: FloatArray = np.hypot(edges[:, 0], edges[:, 1])
+    return lengths
+
+
+def distance_to_line(points: FloatArray, line: FloatArray, *, closed: bool = True) -> FloatArray:
+    """Return the (m,) shortest distances from (m, 2) points to a polyline with (k, 2) vertices.
+
+    Dense: for the few hundred points and edges of a slice this beats building a search tree.
+    """
+    start = line[:, 0] + 1j * line[:, 1]
+    edge = following(start) - start
+    if not closed:
+        start, edge = start[:-1], edge[:-1]
+    keep = edge != 0
+    start, edge = start[keep], edge[keep]
+    inverse, squared_length = 1 / edge, edge.real**2 + edge.imag**2
+    position = points[:, 0] + 1j * points[:, 1]
+    nearest = np.empty(len(points))
+    block = max(1, BLOCK // len(edge))
+    for first in range(0, len(points), block):
+        # Along the edge (real) and across it (imaginary), both in edge lengths.
+        local = (position[first : first + block, None] - start) * inverse
+        beyond = local.real - np.clip(local.real, 0.0, 1.0)
+        squared = (beyond**2 + local.imag**2) * squared_length
+        nearest[first : first + block] = squared.min(axis=1)
+    return np.sqrt(nearest)
+
+
+def _largest(geometry: shapely.Geometry) -> shapely.Polygon:
+    """Return the polygon itself, or the largest part of several."""
+    return max(shapely.get_parts(geometry), key=shapely.area)

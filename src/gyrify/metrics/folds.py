@@ -1,0 +1,268 @@
+"""Gyri and sulci: extrema of the normal displacement of the contour from its overall shape."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+from scipy.signal import find_peaks
+
+from gyrify.errors import ConfigError
+from gyrify.metrics.contour import (
+    FloatArray,
+    as_contour,
+    distance_to_line,
+    filled,
+    following,
+    offset_outline,
+    require_positive,
+    resample,
+    ring_vertices,
+)
+
+# Undulations with up to this many periods around the brain are its shape; folds are five or more.
+SHAPE_MODES = 4
+# Points of the convex hull the shape is fitted to.
+_SHAPE_SAMPLES = 512
+
+
+@dataclass(frozen=True, eq=False)
+class LowModeShape:
+    """The overall shape of a contour: an ellipse and a few slow undulations along its normal.
+
+    Attributes
+    ----------
+    centre : (2,) float array
+        Centre of the ellipse [mm].
+    to_circle : (2, 2) float array
+        Symmetric map [1/mm] that takes the ellipse to the unit circle.
+    modes : (SHAPE_MODES + 1,) complex array
+        Fourier coefficients [mm] of the undulation over the angle on that circle, of mode 0, 1, ….
+    """
+
+    centre: FloatArray
+    to_circle: FloatArray
+    modes: NDArray[np.complex128]
+
+    def displacement(self, points: FloatArray) -> FloatArray:
+        """Return the (n,) outward normal displacements [mm] of (n, 2) points, to first order."""
+        height, phase = _elliptic(points, self.centre, self.to_circle)
+        above: FloatArray = height - _undulation(self.modes, phase)
+        return above
+
+    def contour(self, samples: int = 400) -> FloatArray:
+        """Return (samples, 2) points of the shape [mm], to draw it."""
+        angle = np.arange(samples) * (2 * np.pi / samples)
+        circle = np.column_stack([np.cos(angle), np.sin(angle)])
+        normal = circle @ self.to_circle
+        normal /= np.hypot(normal[:, 0], normal[:, 1])[:, None]
+        undulation = _undulation(self.modes, np.exp(1j * angle))
+        ellipse = self.centre + circle @ np.linalg.inv(self.to_circle)
+        curve: FloatArray = ellipse + undulation[:, None] * normal
+        return curve
+
+
+@dataclass(frozen=True, eq=False)
+class Folds:
+    """Where a contour is folded.
+
+    Attributes
+    ----------
+    points : (samples, 2) float array
+        The contour at equal arc length [mm].
+    displacement : (samples,) float array
+        Normal displacement from the low-mode shape [mm], positive outwards.
+    crowns, fundi : (n_gyri,) int arrays
+        Indices into ``points`` of the gyral crowns and sulcal fundi, ascending; they alternate along the
+        contour.
+    """
+
+    points: FloatArray
+    displacement: FloatArray
+    crowns: NDArray[np.int64]
+    fundi: NDArray[np.int64]
+
+    @property
+    def n_gyri(self) -> int:
+        """Number of gyri, which is also the number of sulci."""
+        return len(self.crowns)
+
+    @property
+    def crown_points(self) -> FloatArray:
+        """(n_gyri, 2) positions of the crowns [mm]."""
+        return self.points[self.crowns]
+
+    @property
+    def fundus_points(self) -> FloatArray:
+        """(n_gyri, 2) positions of the fundi [mm]."""
+        return self.points[self.fundi]
+
+
+def find_folds(contour: ArrayLike, gyrus_prominence: float = 0.3, samples: int = 2000) -> Folds:
+    """Find the gyri and sulci of a closed contour.
+
+    Parameters
+    ----------
+    contour : (n, 2) array_like
+        Vertices in order [mm], in either direction.
+    gyrus_prominence : float
+        How far a crown must stand out above the sulci beside it, and a fundus lie below its gyri [mm], > 0.
+    samples : int
+        Number of points at equal arc length the contour is resampled to, at least 16.
+
+    Returns
+    -------
+    Folds
+
+    Raises
+    ------
+    ConfigError
+        If the prominence or the number of samples is out of range.
+    MeshError
+        If the contour is malformed.
+
+    See Also
+    --------
+    low_mode_shape : what the displacement is measured from.
+    periodic_extrema : the detection alone, for any periodic profile such as the surface of a strip.
+    """
+    require_positive("gyrus_prominence", gyrus_prominence)
+    if samples < 16:
+        raise ConfigError(f"samples = {samples} is out of range: it must be >= 16.", "The default is 2000.")
+    vertices = as_contour(contour)
+    points = resample(vertices, samples)
+    displacement = low_mode_shape(vertices).displacement(points)
+    crowns, fundi = periodic_extrema(displacement, gyrus_prominence)
+    return Folds(points, displacement, crowns, fundi)
+
+
+def low_mode_shape(contour: ArrayLike) -> LowModeShape:
+    """Overall shape of a closed contour: what it would be without its folds.
+
+    The convex hull is fitted, in which sulci do not show, so that a single deep sulcus does not bend the
+    shape. The ellipse has the hull's area moments; the undulations are the hull's first Fourier modes about
+    that ellipse.
+
+    Parameters
+    ----------
+    contour : (n, 2) array_like
+        Vertices in order [mm].
+
+    Returns
+    -------
+    LowModeShape
+
+    Raises
+    ------
+    MeshError
+        If the contour is malformed.
+    """
+    hull = ring_vertices(shapely.linestrings(as_contour(contour)).convex_hull.exterior)
+    centre, to_circle = _area_ellipse(hull)
+    height, phase = _elliptic(resample(hull, _SHAPE_SAMPLES), centre, to_circle)
+    turn = np.angle(following(phase) * np.conj(np.roll(phase, 1)))
+    modes = (height * turn / turn.sum()) @ np.vander(np.conj(phase), SHAPE_MODES + 1, increasing=True)
+    modes[1:] *= 2
+    return LowModeShape(centre, to_circle, modes)
+
+
+def periodic_extrema(profile: FloatArray, prominence: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Maxima and minima of a periodic profile that stand out by at least the prominence.
+
+    Parameters
+    ----------
+    profile : (n,) float array
+        One period [mm].
+    prominence : float
+        Smallest prominence [mm].
+
+    Returns
+    -------
+    maxima, minima : int arrays
+        Ascending indices; as many of one as of the other, and alternating.
+    """
+    return _periodic_maxima(profile, prominence), _periodic_maxima(-profile, prominence)
+
+
+def sulcal_depth(points: ArrayLike, contour: ArrayLike, closing_radius: float = 10.0) -> FloatArray:
+    """Depth of points below the outline of the closing.
+
+    Parameters
+    ----------
+    points : (k, 2) array_like
+        Points on or inside the outline [mm], such as `Folds.fundus_points`.
+    contour : (n, 2) array_like
+        Vertices of the closed contour in order [mm].
+    closing_radius : float
+        Radius of the closing [mm], > 0.
+
+    Returns
+    -------
+    (k,) float array
+        Shortest distance to the outline [mm]; 0 on it.
+
+    Raises
+    ------
+    ConfigError
+        If the radius is not positive.
+    MeshError
+        If the contour is malformed.
+    """
+    require_positive("closing_radius", closing_radius)
+    offset = offset_outline(filled(as_contour(contour)), closing_radius)
+    return depth_below(np.asarray(points, dtype=np.float64).reshape(-1, 2), offset, closing_radius)
+
+
+def depth_below(points: FloatArray, offset: shapely.LinearRing, radius: float) -> FloatArray:
+    """`sulcal_depth` from the offset outline: the closing's outline lies one radius inside it."""
+    return np.maximum(distance_to_line(points, ring_vertices(offset)) - radius, 0.0)
+
+
+def fold_wavelength(exposed_length: float, n_gyri: int) -> float:
+    """Mean distance between crowns along the exposed outline [mm]; infinite where nothing is folded."""
+    return exposed_length / n_gyri if n_gyri else float("inf")
+
+
+def _periodic_maxima(profile: FloatArray, prominence: float) -> NDArray[np.int64]:
+    """Return the maxima; cut open at the lowest point, a period has the prominences it has on the circle."""
+    lowest = int(np.argmin(profile))
+    cut = np.concatenate([profile[lowest:], profile[: lowest + 1]])
+    peaks, _ = find_peaks(cut, prominence=prominence)
+    return np.sort((peaks + lowest) % len(profile)).astype(np.int64)
+
+
+def _area_ellipse(polygon: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return centre and map to the unit circle of the ellipse with the polygon's second area moments."""
+    origin = polygon.mean(axis=0)
+    a = polygon - origin
+    b = following(a)
+    cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    area = cross.sum() / 2
+    centre = (a + b).T @ cross / (6 * area)
+    s = a + b
+    moment = ((a * cross[:, None]).T @ a + (b * cross[:, None]).T @ b + (s * cross[:, None]).T @ s) / (
+        24 * area
+    )
+    variance, axes = np.linalg.eigh(moment - np.outer(centre, centre))
+    # A full ellipse has a variance of a quarter of the squared semi-axis.
+    return origin + centre, (axes * (0.5 / np.sqrt(variance))) @ axes.T
+
+
+def _elliptic(
+    points: FloatArray, centre: FloatArray, to_circle: FloatArray
+) -> tuple[FloatArray, NDArray[np.complex128]]:
+    """Return first-order heights [mm] of points above the ellipse and their unit phases around it."""
+    mapped = (points - centre) @ to_circle
+    radius = np.hypot(mapped[:, 0], mapped[:, 1])
+    radius = np.where(radius > 0, radius, 1.0)
+    unit = mapped / radius[:, None]
+    slope = unit @ to_circle
+    height = (radius - 1) / np.hypot(slope[:, 0], slope[:, 1])
+    return height, unit[:, 0] + 1j * unit[:, 1]
+
+
+def _undulation(modes: NDArray[np.complex128], phase: NDArray[np.complex128]) -> FloatArray:
+    """Return the real Fourier series with coefficients of mode 0, 1, … at unit phases."""
+    return np.asarray(np.polynomial.polynomial.polyval(phase, modes).real, dtype=np.float64)

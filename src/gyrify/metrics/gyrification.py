@@ -1,0 +1,127 @@
+"""The gyrification index: contour length over exposed length, in three definitions."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal, get_args
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike
+from scipy.spatial import cKDTree
+
+from gyrify.errors import ConfigError
+from gyrify.metrics.contour import (
+    FloatArray,
+    as_contour,
+    edge_lengths,
+    filled,
+    following,
+    offset_outline,
+    require_positive,
+    ring_vertices,
+)
+
+Definition = Literal["hull", "closing", "exposed"]
+
+# A disc that enters the tissue by less than this fraction of its radius is said to touch it.
+_TOUCH = 1e-3
+# Longest contour edge when looking for exposed parts, as a fraction of the radius.
+_FINEST = 0.2
+
+
+def gyrification_index(
+    contour: ArrayLike, definition: Definition = "closing", closing_radius: float = 10.0
+) -> float:
+    """Gyrification index GI = contour length / exposed length, in the state the contour is given in.
+
+    Parameters
+    ----------
+    contour : (n, 2) array_like
+        Vertices of the closed contour in order [mm], in either direction.
+    definition : {"closing", "hull", "exposed"}
+        What the exposed length is. ``"hull"``: perimeter of the convex hull. ``"closing"``: outline of the
+        morphological closing with ``closing_radius``. ``"exposed"``: length of the part of the contour that
+        lies on that outline, that is, where a disc of that radius can touch it from outside.
+    closing_radius : float
+        Radius of the closing [mm], > 0; not used by ``"hull"``.
+
+    Returns
+    -------
+    float
+        GI [-]; 1 for a convex contour. Infinite if no part of the contour is exposed.
+
+    Raises
+    ------
+    ConfigError
+        If the definition is unknown or the radius not positive.
+    MeshError
+        If the contour is malformed.
+
+    Notes
+    -----
+    The contour length counts the whole contour, also where it crosses itself; the exposed length is then that
+    of the outer outline of everything the contour encloses.
+    """
+    if definition not in get_args(Definition):
+        raise ConfigError(
+            f"definition = {definition!r} is not a gyrification index.",
+            f"Choose one of {', '.join(get_args(Definition))}.",
+        )
+    require_positive("closing_radius", closing_radius)
+    vertices = as_contour(contour)
+    tissue = filled(vertices)
+    if definition == "hull":
+        exposed = float(tissue.convex_hull.length)
+    elif definition == "closing":
+        exposed = closing_length(offset_outline(tissue, closing_radius), closing_radius)
+    else:
+        exposed = exposed_length(tissue, closing_radius)
+    length = float(edge_lengths(vertices).sum())
+    return length / exposed if exposed > 0 else math.inf
+
+
+def closing_length(offset: shapely.LinearRing, radius: float) -> float:
+    """Length [mm] of the closing's outline, from the outline offset by the radius.
+
+    The closing is the offset body eroded by the same radius. No arc of the offset outline is tighter than the
+    radius, so the erosion shortens it by exactly 2π·radius (Steiner) and need not be constructed.
+    """
+    return float(offset.length) - 2 * math.pi * radius
+
+
+def exposed_length(tissue: shapely.Polygon, radius: float) -> float:
+    """Length [mm] of the part of a polygon's outline that a disc of the radius can touch from outside.
+
+    The disc that touches an edge at its midpoint enters the tissue by ``radius`` less its distance to the
+    outline; between midpoints that overlap is interpolated to find where the exposed part ends.
+    """
+    start = _short_edges(tissue, radius * _FINEST)
+    edge = following(start) - start
+    length = np.hypot(edge[:, 0], edge[:, 1])
+    outwards = np.column_stack([edge[:, 1], -edge[:, 0]]) / length[:, None]
+    midpoint = start + 0.5 * edge
+    outline = cKDTree(np.concatenate([start, midpoint]), balanced_tree=False, compact_nodes=False)
+    distance, _ = outline.query(midpoint + radius * outwards, distance_upper_bound=radius)
+    margin = np.minimum(distance, radius) - radius * (1 - _TOUCH)
+    between = 0.5 * (length + following(length))
+    return float(between @ _positive_part(margin, following(margin)))
+
+
+def _short_edges(tissue: shapely.Polygon, longest: float) -> FloatArray:
+    """Return the outline's vertices counter-clockwise, edges split until none is longer than ``longest``."""
+    ring = tissue.exterior
+    vertices = ring_vertices(ring)
+    lengths = edge_lengths(vertices)
+    if lengths.max() > longest:
+        vertices = ring_vertices(shapely.segmentize(ring, longest))
+        lengths = edge_lengths(vertices)
+    vertices = vertices[lengths > 0]
+    return vertices if ring.is_ccw else vertices[::-1]
+
+
+def _positive_part(left: FloatArray, right: FloatArray) -> FloatArray:
+    """Return the fraction of each interval on which the linear function with these end values is positive."""
+    low, high = np.minimum(left, right), np.maximum(left, right)
+    crossing = np.where(low < 0, high / np.where(high > low, high - low, 1.0), 1.0)
+    return np.where(high > 0, crossing, 0.0)
