@@ -1,3 +1,103 @@
-"""gyrify simulates how the cerebral cortex folds."""
+"""gyrify simulates how the human cerebral cortex folds.
+
+A configuration becomes a mesh, growth and material give each cell an energy, the total energy is minimised
+at each growth increment, and the states go into a history that metrics and pictures read.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from gyrify.config import Config
+    from gyrify.errors import (
+        ConfigError,
+        GyrifyError,
+        HistoryError,
+        InvertedCellError,
+        LimitReachedError,
+        MeshError,
+        SolveError,
+    )
+    from gyrify.mesh import Mesh
+    from gyrify.metrics import (
+        Measures,
+        cortical_thickness,
+        growth_ratio_from_scaling,
+        growth_ratio_from_volumes,
+        gyrification_index,
+        length_increase,
+        measure,
+    )
+    from gyrify.outputs import write_outputs
+    from gyrify.simulate import Progress, resume, simulate
+    from gyrify.store import History
+    from gyrify.summary import measure_state, summarise
 
 __version__ = "0.1.0"
+
+# Loaded on first use, so that the command line answers at once.
+_HOMES = {
+    "Config": "config",
+    "ConfigError": "errors",
+    "GyrifyError": "errors",
+    "History": "store",
+    "HistoryError": "errors",
+    "InvertedCellError": "errors",
+    "LimitReachedError": "errors",
+    "Measures": "metrics",
+    "Mesh": "mesh",
+    "MeshError": "errors",
+    "Progress": "simulate",
+    "SolveError": "errors",
+    "cortical_thickness": "metrics",
+    "growth_ratio_from_scaling": "metrics",
+    "growth_ratio_from_volumes": "metrics",
+    "gyrification_index": "metrics",
+    "length_increase": "metrics",
+    "measure": "metrics",
+    "measure_state": "summary",
+    "resume": "simulate",
+    "simulate": "simulate",
+    "summarise": "summary",
+    "write_outputs": "outputs",
+}
+
+__all__ = [
+    "Config",
+    "ConfigError",
+    "GyrifyError",
+    "History",
+    "HistoryError",
+    "InvertedCellError",
+    "LimitReachedError",
+    "Measures",
+    "Mesh",
+    "MeshError",
+    "Progress",
+    "SolveError",
+    "__version__",
+    "cortical_thickness",
+    "growth_ratio_from_scaling",
+    "growth_ratio_from_volumes",
+    "gyrification_index",
+    "length_increase",
+    "measure",
+    "measure_state",
+    "resume",
+    "simulate",
+    "summarise",
+    "write_outputs",
+]
+
+
+def __getattr__(name: str) -> Any:
+    home = _HOMES.get(name)
+    if home is None:
+        raise AttributeError(f"module 'gyrify' has no attribute {name!r}")
+    return getattr(import_module(f"gyrify.{home}"), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -59,7 +59,9 @@ def build_mesh(config: Config) -> Mesh:
 def _refuse(field: str, value: object, available: tuple[object, ...]) -> None:
     if value not in available:
         choices = ", ".join(repr(choice) for choice in available)
-        raise ConfigError(f"{field} = {value!r} is not available in this version.", f"Choose one of: {choices}.")
+        raise ConfigError(
+            f"{field} = {value!r} is not available in this version.", f"Choose one of: {choices}."
+        )
 
 
 class Slice:
@@ -113,8 +115,9 @@ class Slice:
     def lumped_area(self) -> FloatArray:
         """(n_points,) reference area of each point [mm^2]."""
         n_nodes = self.mesh.cells.shape[1]
-        shares = np.repeat(self.simplices.volumes / n_nodes, n_nodes)
-        return np.bincount(self.mesh.cells.ravel(), weights=shares, minlength=self.mesh.n_points)
+        area = np.zeros(self.mesh.n_points)
+        np.add.at(area, self.mesh.cells, self.simplices.volumes[:, None] / n_nodes)
+        return area
 
     @cached_property
     def free(self) -> IntArray:
@@ -149,6 +152,22 @@ class Slice:
         return ElasticKinematics.of(
             self.simplices, growth_tensor(stretch, self.tangential, self.mesh.across), out_of_plane
         )
+
+    def volume_growth(self, time: float) -> FloatArray:
+        """(n_cells,) J_g = det F_g at a growth time, the 33 entry included."""
+        stretch = growth_stretch(self.rate, time, self.config.growth.stretch)
+        out_of_plane = out_of_plane_growth(stretch, self.config.growth.out_of_plane)
+        across = np.where(self.tangential, 1.0, stretch)
+        return np.asarray(stretch ** (self.mesh.n_dim - 1) * across * out_of_plane)
+
+    def is_stable(self, fraction: float, u: FloatArray) -> bool:
+        """Whether elastic and contact energy alone have a positive definite Hessian at a state."""
+        terms: list[EnergyTerm] = [self.elastic_energy(self.kinematics(fraction * self.config.growth.duration))]
+        if self.config.contact.enabled:
+            terms.append(self.contact_energy(u))
+        system = self.system(np.empty((0, 2), dtype=np.int64))
+        evaluations = TotalEnergy(terms).evaluate(u, project_psd=False)
+        return system.factorise(evaluations, lambda: self.candidates(u)).n_negative == 0
 
     def elastic_energy(self, kinematics: ElasticKinematics) -> ElasticEnergy:
         """Hyperelastic energy of grown cells."""

@@ -13,6 +13,7 @@ from gyrify.config import Config
 from gyrify.errors import HistoryError, LimitReachedError, SolveError
 from gyrify.limits import Watch
 from gyrify.model import Slice
+from gyrify.solve.linear import linear_solver
 from gyrify.solve.quasistatic import State, grow
 from gyrify.store.history import History
 from gyrify.store.journal import Journal
@@ -57,7 +58,11 @@ Observer = Callable[[Progress], None]
 
 
 def simulate(
-    config: Config, out: str | Path | None = None, *, observers: Iterable[Observer] = (), overwrite: bool = False
+    config: Config,
+    out: str | Path | None = None,
+    *,
+    observers: Iterable[Observer] = (),
+    overwrite: bool = False,
 ) -> History:
     """Fold a slice.
 
@@ -85,7 +90,7 @@ def simulate(
         If the folder cannot be used.
     """
     problem = Slice(config)
-    with nullcontext() if out is None else _claimed(Path(out), overwrite):
+    with nullcontext() if out is None else _claimed(Path(out), config, overwrite):
         path = None if out is None else Path(out) / "journal.sqlite"
         journal = Journal.create(path, {"config": config.to_toml(), "versions": json.dumps(versions())})
         journal.append(State.reference(problem.mesh.n_points, problem.mesh.n_dim), 0.0)
@@ -125,15 +130,16 @@ def _run(problem: Slice, journal: Journal, observers: tuple[Observer, ...]) -> H
     state = journal.state(len(journal) - 1)
     stepping = problem.stepping
     start, begun = state.position / stepping.end, time.perf_counter()
-    journal.set_meta(status="running", reason="", advice="")
+    solver = linear_solver(problem.config.solver.linear_solver).name
+    journal.set_meta(status="running", reason="", advice="", stable="", linear_solver=solver)
     watch = Watch(problem.config.limits.wall_time, problem.config.limits.memory)
     try:
         clock = begun
-        for state in grow(problem, stepping, state, watch):
+        for accepted in grow(problem, stepping, state, watch):
             now = time.perf_counter()
-            journal.append(state, now - clock)
+            journal.append(accepted, now - clock)
             clock = now
-            progress = Progress(problem, state, state.position / stepping.end, now - begun, start)
+            progress = Progress(problem, accepted, accepted.position / stepping.end, now - begun, start)
             for observer in observers:
                 observer(progress)
     except LimitReachedError as limit:
@@ -142,16 +148,20 @@ def _run(problem: Slice, journal: Journal, observers: tuple[Observer, ...]) -> H
         journal.set_meta(status="failed", reason=failure.message, advice=failure.advice)
         raise
     except KeyboardInterrupt:
-        journal.set_meta(status="interrupted", reason="interrupted by the user", advice="Continue with resume.")
+        journal.set_meta(
+            status="interrupted", reason="interrupted by the user", advice="Continue with resume."
+        )
         raise
     else:
-        journal.set_meta(status="completed")
+        last = journal.state(len(journal) - 1)
+        stable = problem.is_stable(last.position / stepping.end, last.u)
+        journal.set_meta(status="completed", stable="true" if stable else "false")
     return History(journal)
 
 
 @contextmanager
-def _claimed(folder: Path, overwrite: bool) -> Iterator[None]:
-    """Hold the folder, made if need be, free of an earlier run."""
+def _claimed(folder: Path, config: Config, overwrite: bool) -> Iterator[None]:
+    """Hold the folder, made if need be, free of an earlier run, with the configuration in it."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -162,10 +172,11 @@ def _claimed(folder: Path, overwrite: bool) -> Iterator[None]:
         if (folder / "journal.sqlite").exists() and not overwrite:
             raise HistoryError(
                 f"The folder {folder} already holds a run.",
-                "Replace it with --overwrite, continue it with `gyrify resume`, or choose another with --out.",
+                "Replace it with --overwrite, continue it with `gyrify resume`, or choose another.",
             )
         for file in _leftovers(folder):
             file.unlink()
+        (folder / "config.toml").write_text(config.to_toml(), encoding="utf-8")
         yield
 
 

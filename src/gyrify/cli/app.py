@@ -9,21 +9,15 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
-from typing import Final
-
 from cyclopts import App, Parameter
 from cyclopts.exceptions import CycloptsError
 
 from gyrify import __version__
 from gyrify.cli import config, presets
+from gyrify.cli import run as run_commands
+from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, USAGE
 from gyrify.cli.streams import complain, print_json
 from gyrify.errors import ConfigError, GyrifyError, HistoryError
-
-COMPLETED: Final = 0
-FAILED: Final = 1
-USAGE: Final = 2
-STOPPED: Final = 3
-INTERRUPTED: Final = 130
 
 app = App(
     name="gyrify",
@@ -33,6 +27,8 @@ app = App(
     result_action="return_value",
     suppress_keyboard_interrupt=False,
 )
+app.command(run_commands.run)
+app.command(run_commands.resume)
 app.command(presets.presets)
 app.command(config.app)
 

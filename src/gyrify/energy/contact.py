@@ -71,11 +71,12 @@ class ContactSurface:
         """(n_pairs, 2) point indices of vertices and edge ends closer than a distance [mm]."""
         candidates = ipctk.Candidates()
         candidates.build(self.mesh, self.vertices(u), distance)
-        pairs = np.array([(c.vertex_id, c.edge_id) for c in candidates.ev_candidates], dtype=np.int64).reshape(-1, 2)
+        found = [(c.vertex_id, c.edge_id) for c in candidates.ev_candidates]
+        pairs = np.array(found, dtype=np.int64).reshape(-1, 2)
         ends = self.edges[pairs[:, 1]]
         vertices = np.repeat(pairs[:, :1], 2, axis=1)
         local = np.unique(np.sort(np.stack([vertices.ravel(), ends.ravel()], axis=1), axis=1), axis=0)
-        return self.contour[local]
+        return np.asarray(self.contour[local])
 
 
 class ContactEnergy:
@@ -123,7 +124,9 @@ class ContactEnergy:
         step = self.surface.collision_free_step(u, du)
         return 1.0 if step >= 1.0 else SAFETY * step
 
-    def _hessian(self, collisions: ipctk.NormalCollisions, vertices: FloatArray, project_psd: bool) -> Hessian:
+    def _hessian(
+        self, collisions: ipctk.NormalCollisions, vertices: FloatArray, project_psd: bool
+    ) -> Hessian:
         method = ipctk.PSDProjectionMethod.CLAMP if project_psd else ipctk.PSDProjectionMethod.NONE
         matrix = self._barrier.hessian(collisions, self.surface.mesh, vertices, method).tocoo()
         upper = matrix.row <= matrix.col

@@ -57,7 +57,17 @@ class ElasticEnergy:
         values = np.zeros(self.pattern.pattern.rows.size if order >= 2 else 0)
         material = (self.mu, self.kappa, self.weight)
         value = self._kernels.accumulate(
-            u, k.cells, k.base, k.gradients, k.f33, *material, order, project_psd, self.pattern.position, gradient, values
+            u,
+            k.cells,
+            k.base,
+            k.gradients,
+            k.f33,
+            *material,
+            order,
+            project_psd,
+            self.pattern.position,
+            gradient,
+            values,
         )
         if not np.isfinite(value):
             return Evaluation(np.inf)

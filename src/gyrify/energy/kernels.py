@@ -8,7 +8,7 @@ is asked for, and the tangent is indefinite, is it formed as a matrix.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,9 +24,11 @@ class ElasticKernels(NamedTuple):
 
     accumulate: Callable[..., float]
     largest_step: Callable[..., float]
+    grow: Callable[..., None]
+    volume_ratio: Callable[..., None]
 
 
-@lru_cache(maxsize=None)
+@cache
 def elastic_kernels(n_dim: int, n_nodes: int) -> ElasticKernels:
     """Kernels for cells of ``n_nodes`` nodes in ``n_dim`` dimensions, compiled at their first call."""
     deform, invert, largest_step = _geometry(n_dim, n_nodes)
@@ -66,7 +68,7 @@ def elastic_kernels(n_dim: int, n_nodes: int) -> ElasticKernels:
                 add_matrix(f, h, gradients[c], moduli, weight[c], position[c], values)
         return value
 
-    return ElasticKernels(accumulate, largest_step)
+    return ElasticKernels(accumulate, largest_step, *_preparation(n_dim, n_nodes, deform, invert))
 
 
 def _geometry(n_dim: int, n_nodes: int) -> tuple[Any, Any, Any]:
@@ -130,6 +132,35 @@ def _geometry(n_dim: int, n_nodes: int) -> tuple[Any, Any, Any]:
 
     invert = invert_plane if n_dim == 2 else invert_space
     return deform, invert, largest_step
+
+
+def _preparation(n_dim: int, n_nodes: int, deform: Any, invert: Any) -> tuple[Any, Any]:
+    """Growth of the reference cells, and their volume ratio in a state."""
+
+    @njit(cache=True)
+    def grow(F_g, gradients, base, grown, det):  # type: ignore[no-untyped-def]
+        """Write F_g^{-1}, the gradients with respect to the grown cell, and det F_g in the plane."""
+        H = np.empty((n_dim, n_dim))
+        for c in range(F_g.shape[0]):
+            det[c] = invert(F_g[c], H)
+            for i in range(n_dim):
+                for j in range(n_dim):
+                    base[c, i, j] = H[j, i]
+            for a in range(n_nodes):
+                for j in range(n_dim):
+                    grown[c, a, j] = 0.0
+                    for i in range(n_dim):
+                        grown[c, a, j] += gradients[c, a, i] * base[c, i, j]
+
+    @njit(cache=True)
+    def volume_ratio(u, cells, gradients, ratio):  # type: ignore[no-untyped-def]
+        """Write det(I + grad u)."""
+        F, H, identity = np.empty((n_dim, n_dim)), np.empty((n_dim, n_dim)), np.eye(n_dim)
+        for c in range(cells.shape[0]):
+            deform(u, cells[c], identity, gradients[c], F)
+            ratio[c] = invert(F, H)
+
+    return grow, volume_ratio
 
 
 def _derivatives(n_dim: int, n_nodes: int) -> tuple[Any, Any, Any]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gyrify.energy.kernels import elastic_kernels
 from gyrify.energy.term import FloatArray, IntArray
 
 
@@ -39,6 +40,13 @@ class Simplices:
         gradients = np.concatenate([-inner.sum(axis=1, keepdims=True), inner], axis=1)
         volumes = np.linalg.det(edges) / float(np.prod(np.arange(1, n_dim + 1)))
         return Simplices(cells, np.ascontiguousarray(gradients), volumes, n_points)
+
+    def volume_ratio(self, u: FloatArray) -> FloatArray:
+        """(n_cells,) in-plane det F of a state u [mm]."""
+        n_cells, n_nodes, n_dim = self.gradients.shape
+        ratio = np.empty(n_cells)
+        elastic_kernels(n_dim, n_nodes).volume_ratio(u, self.cells, self.gradients, ratio)
+        return ratio
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,17 +94,19 @@ class ElasticKinematics:
         F33 : float
             Total out-of-plane stretch, 1 in plane strain.
         """
-        base = np.linalg.inv(F_g)
+        n_cells, n_nodes, n_dim = simplices.gradients.shape
+        base, gradients, det = np.empty_like(F_g), np.empty_like(simplices.gradients), np.empty(n_cells)
+        elastic_kernels(n_dim, n_nodes).grow(F_g, simplices.gradients, base, gradients, det)
         return ElasticKinematics(
             cells=simplices.cells,
-            base=np.ascontiguousarray(base),
-            gradients=np.ascontiguousarray(simplices.gradients @ base),
+            base=base,
+            gradients=gradients,
             f33=F33 / F_g33,
-            J_g=np.linalg.det(F_g) * F_g33,
+            J_g=det * F_g33,
             volumes=simplices.volumes,
             n_points=simplices.n_points,
         )
 
     def deformation(self, u: FloatArray) -> FloatArray:
         """(n_cells, n_dim, n_dim) elastic deformation gradients in the plane of a state u [mm]."""
-        return self.base + np.einsum("cai,caj->cij", u[self.cells], self.gradients)
+        return np.asarray(self.base + np.einsum("cai,caj->cij", u[self.cells], self.gradients))

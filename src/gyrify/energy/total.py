@@ -57,7 +57,7 @@ class FreePattern:
         target = np.minimum(np.searchsorted(self._codes, codes), self._codes.size - 1)
         if not np.array_equal(self._codes[target], codes):
             return None
-        if codes.size > self.free.size:
+        if codes.size >= self.free.size:
             self._maps[id(pattern)] = (pattern, source, target)
         return source, target
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from gyrify.energy.elastic import CellPattern
@@ -27,8 +29,7 @@ class DragEnergy:
     def __init__(self, coefficient: float, lumped_area: FloatArray, previous: FloatArray) -> None:
         self.weight = coefficient * lumped_area
         self.previous = previous
-        dofs = np.arange(previous.size)
-        self._pattern = Pattern(dofs, dofs)
+        self._pattern = _diagonal(previous.size)
 
     def evaluate(self, u: FloatArray, order: int, project_psd: bool = False) -> Evaluation:  # noqa: ARG002
         """Energy [Pa mm^2], gradient [Pa mm], Hessian [Pa]; see `EnergyTerm`."""
@@ -40,6 +41,12 @@ class DragEnergy:
     def max_step(self, u: FloatArray, du: FloatArray) -> float:  # noqa: ARG002
         """No limit."""
         return 1.0
+
+
+@lru_cache(maxsize=4)
+def _diagonal(n_dofs: int) -> Pattern:
+    dofs = np.arange(n_dofs)
+    return Pattern(dofs, dofs)
 
 
 class KelvinVoigtEnergy:
@@ -108,14 +115,12 @@ class KelvinVoigtEnergy:
         matrix += np.einsum("cab,ik->caibk", stiffening, np.eye(n_dim))
         size = k.cells.shape[1] * n_dim
         rows, cols = np.triu_indices(size)
-        values = np.bincount(
-            self.pattern.position.ravel(),
-            weights=matrix.reshape(-1, size, size)[:, rows, cols].ravel(),
-            minlength=self.pattern.pattern.rows.size,
-        )
+        entries = matrix.reshape(-1, size, size)[:, rows, cols]
+        values = np.zeros(self.pattern.pattern.rows.size)
+        np.add.at(values, self.pattern.position, entries)
         return Hessian(self.pattern.pattern, values)
 
 
 def green_lagrange(F: FloatArray) -> FloatArray:
     """(n_cells, n_dim, n_dim) strain E = (F^T F - I) / 2."""
-    return 0.5 * (np.einsum("cki,ckj->cij", F, F) - np.eye(F.shape[1]))
+    return np.asarray(0.5 * (np.einsum("cki,ckj->cij", F, F) - np.eye(F.shape[1])))

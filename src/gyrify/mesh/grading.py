@@ -38,7 +38,9 @@ def layer_fractions(n_layers: int, top: float, grading: Grading) -> FloatArray:
     def excess(ratio: float) -> float:
         return float(top * np.power(ratio, powers).sum() - 1.0)
 
-    ratio = LOWEST_RATIO if excess(LOWEST_RATIO) >= 0.0 else brentq(excess, LOWEST_RATIO, 2.0 / top, xtol=1e-15)
+    ratio = (
+        LOWEST_RATIO if excess(LOWEST_RATIO) >= 0.0 else brentq(excess, LOWEST_RATIO, 2.0 / top, xtol=1e-15)
+    )
     thickness = np.power(ratio, powers[::-1])
     lines = np.concatenate([[0.0], np.cumsum(thickness)])
-    return lines / lines[-1]
+    return np.asarray(lines / lines[-1])

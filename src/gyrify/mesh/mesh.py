@@ -52,7 +52,15 @@ class Mesh:
     period: float | None = None
 
     def __post_init__(self) -> None:
-        for array in (self.points, self.cells, self.region, self.contour, self.interface, self.clamped, self.across):
+        for array in (
+            self.points,
+            self.cells,
+            self.region,
+            self.contour,
+            self.interface,
+            self.clamped,
+            self.across,
+        ):
             array.flags.writeable = False
 
     @property

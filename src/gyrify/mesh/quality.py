@@ -26,7 +26,7 @@ def triangle_quality(corners: FloatArray) -> FloatArray:
     """
     edges = np.roll(corners, -1, axis=1) - corners
     double_area = edges[:, 0, 0] * edges[:, 1, 1] - edges[:, 0, 1] * edges[:, 1, 0]
-    return 2.0 * np.sqrt(3.0) * double_area / np.square(edges).sum(axis=(1, 2))
+    return np.asarray(2.0 * np.sqrt(3.0) * double_area / np.square(edges).sum(axis=(1, 2)))
 
 
 def require_quality(mesh: Mesh, lowest: float = LOWEST_QUALITY) -> None:

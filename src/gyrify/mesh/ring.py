@@ -59,7 +59,7 @@ def elliptic_ring(
     wall = min(a, b) * (1.0 - hole_fraction)
     if not 0.0 < T < wall:
         raise MeshError(
-            f"geometry.cortical_thickness = {T:g} mm leaves no white matter: the wall is {wall:.4g} mm thick.",
+            f"geometry.cortical_thickness = {T:g} mm leaves no white matter: the wall is {wall:.4g} mm.",
             f"Choose a thickness between 0 and {0.95 * wall:.4g} mm.",
         )
     mean_wall = np.sqrt(a * b) * (1.0 - hole_fraction)
@@ -68,7 +68,9 @@ def elliptic_ring(
     angle = 2.0 * np.pi * np.arange(n_around) / n_around
     depth, angle = np.broadcast_arrays(depth[:, None], angle[None, :])
     rng = np.random.default_rng(seed)
-    depth, angle = _jittered(depth, angle, n_layers - n_cortex_layers, node_jitter, rng, (a, b), T, hole_fraction)
+    depth, angle = _jittered(
+        depth, angle, n_layers - n_cortex_layers, node_jitter, rng, (a, b), T, hole_fraction
+    )
 
     points = _map_to_ring(depth, angle, (a, b), hole_fraction, T)
     cells, layer = split_quadrilaterals(n_around, n_layers, split, rng, closed=True)
@@ -124,4 +126,4 @@ def _jittered(
 def _ellipse_normals(points: FloatArray, semi_axes: tuple[float, float]) -> FloatArray:
     """Unit outward normals of the ellipses, similar to the contour, through the points."""
     normal = points / np.square(semi_axes)
-    return normal / np.linalg.norm(normal, axis=1, keepdims=True)
+    return np.asarray(normal / np.linalg.norm(normal, axis=1, keepdims=True))

@@ -47,9 +47,13 @@ def split_quadrilaterals(
         falling = np.zeros(row.size, dtype=bool)
     else:
         falling = rng.random(row.size) < 0.5
-    first = np.where(falling[:, None], np.stack([inner, outer, inner_next], 1), np.stack([inner, outer, outer_next], 1))
+    first = np.where(
+        falling[:, None], np.stack([inner, outer, inner_next], 1), np.stack([inner, outer, outer_next], 1)
+    )
     second = np.where(
-        falling[:, None], np.stack([outer, outer_next, inner_next], 1), np.stack([inner, outer_next, inner_next], 1)
+        falling[:, None],
+        np.stack([outer, outer_next, inner_next], 1),
+        np.stack([inner, outer_next, inner_next], 1),
     )
     cells = np.stack([first, second], axis=1).reshape(-1, 3)
     return cells.astype(np.int64), np.repeat(row, 2)

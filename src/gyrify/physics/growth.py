@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 
 Stretch = Literal["linear", "exponential"]
-OutOfPlane = Literal["blocked", "none"]
+OutOfPlane = Literal["blocked", "none", "generalised"]
 
 
 def growth_stretch(rate: FloatArray | float, time: float, stretch: Stretch) -> FloatArray:
@@ -58,18 +58,18 @@ def growth_tensor(stretch: FloatArray, tangential: NDArray[np.bool_], across: Fl
 
 
 def out_of_plane_growth(stretch: FloatArray, out_of_plane: OutOfPlane) -> FloatArray:
-    """Out-of-plane entry F_g,33 of the growth tensor, beside a total F33 = 1.
+    """Out-of-plane entry F_g,33 of the growth tensor.
 
     Parameters
     ----------
     stretch : (n_cells,) float array
         Growth stretch lambda_g.
-    out_of_plane : {"blocked", "none"}
+    out_of_plane : {"blocked", "none", "generalised"}
         ``blocked``: the tissue grows in z too but is held, F_g,33 = lambda_g, so F_e,33 = 1 / lambda_g.
-        ``none``: no growth in z, F_g,33 = 1.
+        ``none``: no growth in z, F_g,33 = 1. ``generalised``: grows in z, with a free common F33.
 
     Returns
     -------
     (n_cells,) float array
     """
-    return stretch.copy() if out_of_plane == "blocked" else np.ones_like(stretch)
+    return np.ones_like(stretch) if out_of_plane == "none" else stretch.copy()

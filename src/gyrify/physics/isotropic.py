@@ -51,7 +51,9 @@ def energy_density(F: FloatArray, f33: FloatArray, mu: FloatArray, kappa: FloatA
     return np.asarray(density.py_func(I1, J, mu, kappa))
 
 
-def first_piola(F: FloatArray, f33: FloatArray, mu: FloatArray, kappa: FloatArray) -> tuple[FloatArray, FloatArray]:
+def first_piola(
+    F: FloatArray, f33: FloatArray, mu: FloatArray, kappa: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """First Piola stress dW/dF of each cell; parameters as in `energy_density`.
 
     Returns

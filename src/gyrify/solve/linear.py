@@ -94,7 +94,10 @@ class SuperLU:
         rows, cols = order[rows], order[indices]
         entry = np.arange(indices.size) + 1.0
         lower_and_upper = sp.coo_matrix(
-            (np.concatenate([entry, entry[off]]), (np.concatenate([rows, cols[off]]), np.concatenate([cols, rows[off]]))),
+            (
+                np.concatenate([entry, entry[off]]),
+                (np.concatenate([rows, cols[off]]), np.concatenate([cols, rows[off]])),
+            ),
             shape=(n, n),
         ).tocsc()
         lower_and_upper.sort_indices()
@@ -130,5 +133,10 @@ class SuperLUFactor:
 
 def _splu(matrix: sp.csc_matrix, order: str) -> sla.SuperLU:
     return sla.splu(
-        matrix, permc_spec=order, diag_pivot_thresh=0.0, relax=1, panel_size=8, options={"SymmetricMode": True}
+        matrix,
+        permc_spec=order,
+        diag_pivot_thresh=0.0,
+        relax=1,
+        panel_size=8,
+        options={"SymmetricMode": True},
     )

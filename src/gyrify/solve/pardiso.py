@@ -7,6 +7,7 @@ one, so that the three phases are called here.
 from __future__ import annotations
 
 import ctypes
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -20,16 +21,22 @@ _ANALYSE, _FACTORISE, _SOLVE, _RELEASE = 11, 22, 33, -1
 _CBWR_AUTO = 2
 
 
+@lru_cache(maxsize=1)
+def _library() -> Any:
+    """MKL, in the mode that gives the same bits for the same input on one processor family."""
+    library = PyPardisoSolver(mtype=_MTYPE).libmkl
+    # Has no effect once MKL has computed something in this process: then the mode is already fixed.
+    library.MKL_CBWR_Set(ctypes.c_int(_CBWR_AUTO))
+    return library
+
+
 class Pardiso:
     """See `gyrify.solve.linear.LinearSolver`; one thread, reproducible numerics."""
 
     name = "pardiso"
 
     def __init__(self) -> None:
-        wrapper = PyPardisoSolver(mtype=_MTYPE)
-        library = wrapper.libmkl
-        # Refused (non-zero) once MKL has computed something in this process: then the mode is already fixed.
-        library.MKL_CBWR_Set(ctypes.c_int(_CBWR_AUTO))
+        library = _library()
         library.MKL_Set_Num_Threads_Local(ctypes.c_int(1))
         self._pardiso = library.pardiso
         self._handle = np.zeros(64, dtype=np.int64)

@@ -9,7 +9,7 @@ import numpy as np
 from gyrify.energy.term import Evaluation, Pattern
 from gyrify.energy.total import FreePattern
 from gyrify.solve.linear import Factor, LinearSolver
-from gyrify.solve.types import FloatArray, IntArray
+from gyrify.solve.types import IntArray
 
 
 class System:
@@ -33,7 +33,13 @@ class System:
     """
 
     def __init__(
-        self, free: IntArray, n_dofs: int, n_dim: int, base: Pattern, solver: LinearSolver, couplings: IntArray
+        self,
+        free: IntArray,
+        n_dofs: int,
+        n_dim: int,
+        base: Pattern,
+        solver: LinearSolver,
+        couplings: IntArray,
     ) -> None:
         self.free, self.n_dofs, self.n_dim = free, n_dofs, n_dim
         self.solver = solver
@@ -63,10 +69,12 @@ class System:
         return rows.ravel(), cols.ravel()
 
     def factorise(self, evaluations: Sequence[Evaluation], candidates: Callable[[], IntArray]) -> Factor:
-        """Factor of the summed Hessian; ``candidates`` gives couplings to add where the pattern is too small."""
+        """Factor of the summed Hessian; ``candidates`` gives couplings where the pattern is too small."""
         hessians = [e.hessian for e in evaluations if e.hessian is not None]
         if not all(self.pattern.holds(h.pattern) for h in hessians):
-            needed = np.concatenate([_pairs(h.pattern, self.n_dim) for h in hessians if h.pattern is not self._base])
+            needed = np.concatenate(
+                [_pairs(h.pattern, self.n_dim) for h in hessians if h.pattern is not self._base]
+            )
             merged = np.concatenate([self.couplings, candidates(), needed])
             self._set_couplings(np.unique(np.sort(merged, axis=1), axis=0))
         data = np.zeros(self.pattern.rows.size)

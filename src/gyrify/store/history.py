@@ -78,7 +78,9 @@ class History:
         """(n_points, 2) displacement u [mm] of a state; negative indices count from the end."""
         number = index + len(self) if index < 0 else index
         if not 0 <= number < len(self):
-            raise HistoryError(f"There is no state {index}.", f"This history holds states 0 to {len(self) - 1}.")
+            raise HistoryError(
+                f"There is no state {index}.", f"This history holds states 0 to {len(self) - 1}."
+            )
         return self.journal.displacement(number)
 
     def points(self, index: int = -1) -> FloatArray:
@@ -132,6 +134,17 @@ class History:
     def wall_s(self) -> float:
         """Time spent solving [s]."""
         return float(sum(self.journal.column("wall_s")))
+
+    @property
+    def linear_solver(self) -> str:
+        """Library that factorised the stiffness matrices."""
+        return self.journal.meta("linear_solver", "unknown")
+
+    @property
+    def stable(self) -> bool | None:
+        """Whether the last state is a stable equilibrium of the tissue alone; None while unknown."""
+        known = self.journal.meta("stable")
+        return known == "true" if known else None
 
     def __repr__(self) -> str:
         return f"History({len(self)} states, {self.fractions[-1]:.0%} grown, {self.status})"

@@ -92,7 +92,9 @@ class Journal:
             If there is none, it is damaged, or of another format.
         """
         if not path.is_file():
-            raise HistoryError(f"There is no journal at {path}.", "Name a folder that `gyrify run` has written.")
+            raise HistoryError(
+                f"There is no journal at {path}.", "Name a folder that `gyrify run` has written."
+            )
         with _translated(str(path)):
             connection = sqlite3.connect(path.resolve().as_uri() + "?mode=rw", uri=True, isolation_level=None)
             if read_only:
@@ -100,7 +102,9 @@ class Journal:
             (application,) = connection.execute("PRAGMA application_id").fetchone()
             (version,) = connection.execute("PRAGMA user_version").fetchone()
         if application != _APPLICATION_ID:
-            raise HistoryError(f"{path} is not a gyrify journal.", "Name a folder that `gyrify run` has written.")
+            raise HistoryError(
+                f"{path} is not a gyrify journal.", "Name a folder that `gyrify run` has written."
+            )
         if version != FORMAT:
             raise HistoryError(
                 f"{path} has journal format {version}; this version of gyrify reads format {FORMAT}.",
@@ -129,7 +133,14 @@ class Journal:
         """Record an accepted increment in one transaction."""
         u = np.ascontiguousarray(state.u, dtype="<f8").tobytes()
         couplings = np.ascontiguousarray(state.couplings, dtype="<i4").tobytes()
-        numbers = (state.index, state.position, state.span, state.next_span, state.residual, *astuple(state.stats))
+        numbers = (
+            state.index,
+            state.position,
+            state.span,
+            state.next_span,
+            state.residual,
+            *astuple(state.stats),
+        )
         row = (*numbers, wall_s, u, couplings, _digest(numbers, u, couplings))
         with _translated(self.name), _transaction(self._connection):
             self._connection.execute(f"INSERT INTO increments VALUES ({','.join('?' * len(row))})", row)
@@ -141,7 +152,9 @@ class Journal:
     def column(self, name: str) -> list[Any]:
         """One number of every increment, in order."""
         with _translated(self.name):
-            return [row[0] for row in self._connection.execute(f"SELECT {name} FROM increments ORDER BY number")]
+            return [
+                row[0] for row in self._connection.execute(f"SELECT {name} FROM increments ORDER BY number")
+            ]
 
     def displacement(self, number: int) -> FloatArray:
         """(n_points, 2) displacement of an increment [mm]."""
@@ -179,7 +192,9 @@ class Journal:
             query = "SELECT * FROM increments WHERE number = ?"
             row: tuple[Any, ...] | None = self._connection.execute(query, (number,)).fetchone()
         if row is None:
-            raise HistoryError(f"The journal {self.name} has no increment {number}.", f"It holds {len(self)}.")
+            raise HistoryError(
+                f"The journal {self.name} has no increment {number}.", f"It holds {len(self)}."
+            )
         if _digest(row[:9], row[10], row[11]) != row[12]:
             raise HistoryError(f"Increment {number} in {self.name} is damaged: its checksum differs.", _RERUN)
         return row

@@ -1,0 +1,37 @@
+# make run: fold the standard slice.  make test: everything that must hold.
+PYTHON ?= python3
+VENV ?= .venv
+BIN = $(VENV)/bin
+
+.PHONY: run test check slow mutants clean
+
+run: $(VENV)/.run
+	$(BIN)/gyrify run --preset reference-slice --out runs/reference-slice --overwrite
+
+test: $(VENV)/.test
+	$(BIN)/python -m ruff format --check .
+	$(BIN)/python -m ruff check .
+	$(BIN)/python -m mypy
+	$(BIN)/python -m pytest -m "not slow" -n auto
+
+slow: $(VENV)/.test
+	$(BIN)/python -m pytest -m slow -n auto
+
+mutants: $(VENV)/.test
+	$(BIN)/python tools/mutants.py
+
+$(VENV)/.venv:
+	$(PYTHON) -c "import sys; sys.exit('gyrify needs Python 3.11 or newer; set PYTHON=...' * (sys.version_info < (3, 11)))"
+	$(PYTHON) -m venv $(VENV)
+	touch $@
+
+$(VENV)/.run: $(VENV)/.venv pyproject.toml constraints.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[fast]"
+	touch $@
+
+$(VENV)/.test: $(VENV)/.venv pyproject.toml constraints.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[fast,test]"
+	touch $@
+
+clean:
+	rm -rf $(VENV)

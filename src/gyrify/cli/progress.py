@@ -1,0 +1,79 @@
+"""Progress of a run: a live bar on a terminal, plain lines elsewhere, nothing when quiet."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from gyrify.cli.streams import complain
+from gyrify.metrics import gyrification_index
+
+if TYPE_CHECKING:
+    from gyrify.simulate import Observer, Progress
+
+# Seconds between two updates of the bar: the gyrification index is only computed for what is shown.
+_PAUSE = 0.1
+
+
+@contextmanager
+def progress_observer(quiet: bool) -> Iterator[list[Observer]]:
+    """Observers to pass to a run."""
+    if quiet:
+        yield []
+    elif sys.stderr.isatty():
+        with _live_bar() as observer:
+            yield [observer]
+    else:
+        yield [_plain_lines()]
+
+
+def _index(progress: Progress) -> float:
+    mesh = progress.slice.mesh
+    contour = (mesh.points + progress.state.u)[mesh.contour]
+    return gyrification_index(contour, closing_radius=progress.slice.config.metrics.closing_radius)
+
+
+def _describe(progress: Progress) -> str:
+    time_, duration = progress.fraction, progress.slice.config.growth.duration
+    return (
+        f"growth time {time_ * duration:.4g} of {duration:g}, GI {_index(progress):.3f}, "
+        f"increment {progress.state.index}, {progress.state.stats.newton_iterations} iterations"
+    )
+
+
+def _plain_lines() -> Callable[[Progress], None]:
+    """A line at each tenth of growth, and at the end."""
+    tenth = -1
+
+    def observe(progress: Progress) -> None:
+        nonlocal tenth
+        reached = int(10.0 * progress.fraction + 1e-9)
+        if reached > tenth:
+            tenth = reached
+            complain(f"{_describe(progress)}, about {progress.remaining_s:.0f} s left")
+
+    return observe
+
+
+@contextmanager
+def _live_bar() -> Iterator[Callable[[Progress], None]]:
+    from rich.console import Console
+    from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
+
+    columns = (BarColumn(), TaskProgressColumn(), TimeRemainingColumn(), TextColumn("{task.description}"))
+    with Bar(*columns, console=Console(stderr=True)) as bar:
+        task = bar.add_task("growing", total=1.0)
+        shown = 0.0
+
+        def observe(progress: Progress) -> None:
+            nonlocal shown
+            now = time.monotonic()
+            if now - shown >= _PAUSE or progress.fraction == 1.0:
+                shown = now
+                bar.update(task, completed=progress.fraction, description=_describe(progress))
+
+        yield observe

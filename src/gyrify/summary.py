@@ -1,0 +1,159 @@
+"""What a run came to: the metrics of its states, and the summary of the whole."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gyrify.metrics import Measures, measure
+from gyrify.store.history import History
+
+
+def measure_state(history: History, index: int = -1) -> Measures:
+    """Metrics of one state of a run.
+
+    Parameters
+    ----------
+    history : History
+        The run.
+    index : int
+        State; negative indices count from the end.
+
+    Returns
+    -------
+    Measures
+    """
+    chosen = history.config.metrics
+    x = history.points(index)
+    return measure(
+        x[history.mesh.contour],
+        x[history.mesh.interface],
+        chosen.closing_radius,
+        chosen.gyrus_prominence,
+        chosen.samples,
+    )
+
+
+def volume_extremes(history: History, index: int = -1) -> tuple[float, float]:
+    """Smallest J = det F and smallest J_e = J / J_g over the cells of a state [-]."""
+    problem = history.slice
+    number = index % len(history)
+    J = problem.simplices.volume_ratio(history.displacement(number))
+    J_g = problem.volume_growth(float(history.growth_times[number]))
+    return float(J.min()), float((J / J_g).min())
+
+
+def metrics_rows(history: History) -> list[dict[str, Any]]:
+    """One row of flat metrics per state, as in ``metrics.csv``."""
+    times, fractions, residuals = history.growth_times, history.fractions, history.residuals
+    rows = []
+    for index in range(len(history)):
+        min_J, min_J_elastic = volume_extremes(history, index)
+        rows.append(
+            {
+                "increment": index,
+                "growth_time": float(times[index]),
+                "growth_fraction": float(fractions[index]),
+                **measure_state(history, index).flat(),
+                "min_J": min_J,
+                "min_J_elastic": min_J_elastic,
+                "residual": float(residuals[index]),
+            }
+        )
+    return rows
+
+
+def summarise(history: History) -> dict[str, Any]:
+    """Summary of a run, with the keys of ``summary.json``.
+
+    Parameters
+    ----------
+    history : History
+        The run, complete or not.
+
+    Returns
+    -------
+    dict
+    """
+    measures = measure_state(history)
+    min_J, min_J_elastic = volume_extremes(history)
+    stats = history.stats
+    n_contour = history.mesh.contour.size
+    return _without_infinities(
+        {
+            "status": history.status,
+            "reason": history.reason,
+            "advice": history.advice,
+            "config_hash": history.config.config_hash,
+            "result_hash": history.result_hash,
+            "growth_time": float(history.growth_times[-1]),
+            **measures.as_dict(),
+            "min_J": min_J,
+            "min_J_elastic": min_J_elastic,
+            "nodes_per_wavelength": n_contour / measures.n_gyri if measures.n_gyri else None,
+            "onset": None,
+            "stable": history.stable,
+            "solver": {
+                "increments": len(history) - 1,
+                "newton_iterations": stats.newton_iterations,
+                "factorizations": stats.factorizations,
+                "analyses": stats.analyses,
+                "rejected": stats.rejected,
+                "residual": float(history.residuals[-1]),
+                "tolerance": history.slice.stepping.criterion.force,
+                "linear_solver": history.linear_solver,
+                "wall_s": history.wall_s,
+            },
+            "versions": history.versions,
+            "seed": history.config.seed,
+        }
+    )
+
+
+def warnings(summary: dict[str, Any]) -> list[str]:
+    """Sentences on what a reader of the summary should not overlook."""
+    found = []
+    nodes = summary["nodes_per_wavelength"]
+    if nodes is not None and nodes < 8.0:
+        found.append(
+            f"A fold spans only {nodes:.1f} points of the contour (8 are needed to resolve it): "
+            "raise mesh.n_around."
+        )
+    if summary["self_intersecting"]:
+        found.append("The contour crosses itself: the state is not physical. Set contact.enabled = true.")
+    if summary["stable"] is False:
+        found.append("The final state is an unstable equilibrium: an arbitrarily small disturbance leaves it.")
+    return found
+
+
+def write_metrics(history: History, path: Path) -> None:
+    """Write ``metrics.csv``, one row per state, by atomic rename."""
+    rows = metrics_rows(history)
+    partial = path.with_suffix(".partial")
+    with partial.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, fieldnames=list(rows[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    os.replace(partial, path)
+
+
+def write_summary(summary: dict[str, Any], path: Path) -> None:
+    """Write ``summary.json`` by atomic rename."""
+    partial = path.with_suffix(".partial")
+    partial.write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    os.replace(partial, path)
+
+
+def _without_infinities(value: Any) -> Any:
+    """JSON knows no infinities; they become null."""
+    if isinstance(value, dict):
+        return {key: _without_infinities(entry) for key, entry in value.items()}
+    if isinstance(value, float | np.floating):
+        return float(value) if math.isfinite(value) else None
+    return value
