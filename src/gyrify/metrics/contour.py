@@ -125,11 +125,13 @@ def closing_outline(contour: ArrayLike, closing_radius: float = 10.0) -> FloatAr
     return ring_vertices(_largest(closed).exterior)
 
 
-def resample(contour: FloatArray, samples: int) -> FloatArray:
-    """Return ``samples`` points at equal arc length along a closed polygon, starting at its first vertex."""
+def resample(contour: FloatArray, samples: int, *, keep_vertices: bool = False) -> FloatArray:
+    """Return points at equal arc length along a closed polygon, if asked together with its vertices."""
     ring = np.concatenate([contour, contour[:1]])
     arc = np.concatenate([[0.0], np.cumsum(edge_lengths(contour))])
     at = np.arange(samples) * (arc[-1] / samples)
+    if keep_vertices:
+        at = np.sort(np.concatenate([at, arc[1:-1]]))
     return np.column_stack([np.interp(at, arc, ring[:, 0]), np.interp(at, arc, ring[:, 1])])
 
 

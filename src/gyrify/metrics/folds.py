@@ -26,6 +26,8 @@ from gyrify.metrics.contour import (
 SHAPE_MODES = 4
 # Points of the convex hull the shape is fitted to.
 _SHAPE_SAMPLES = 512
+# Slope that ranks equal heights, relative to their range.
+_TIE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,9 +72,9 @@ class Folds:
 
     Attributes
     ----------
-    points : (samples, 2) float array
-        The contour at equal arc length [mm].
-    displacement : (samples,) float array
+    points : (n_points, 2) float array
+        The contour at equal arc length and at its vertices, in order [mm].
+    displacement : (n_points,) float array
         Normal displacement from the low-mode shape [mm], positive outwards.
     crowns, fundi : (n_gyri,) int arrays
         Indices into ``points`` of the gyral crowns and sulcal fundi, ascending; they alternate along the
@@ -110,7 +112,7 @@ def find_folds(contour: ArrayLike, gyrus_prominence: float = 0.3, samples: int =
     gyrus_prominence : float
         How far a crown must stand out above the sulci beside it, and a fundus lie below its gyri [mm], > 0.
     samples : int
-        Number of points at equal arc length the contour is resampled to, at least 16.
+        Number of points at equal arc length the contour is resampled to, beside its vertices; at least 16.
 
     Returns
     -------
@@ -132,7 +134,7 @@ def find_folds(contour: ArrayLike, gyrus_prominence: float = 0.3, samples: int =
     if samples < 16:
         raise ConfigError(f"samples = {samples} is out of range: it must be >= 16.", "The default is 2000.")
     vertices = as_contour(contour)
-    points = resample(vertices, samples)
+    points = resample(vertices, samples, keep_vertices=True)
     displacement = low_mode_shape(vertices).displacement(points)
     crowns, fundi = periodic_extrema(displacement, gyrus_prominence)
     return Folds(points, displacement, crowns, fundi)
@@ -183,7 +185,9 @@ def periodic_extrema(profile: FloatArray, prominence: float) -> tuple[NDArray[np
     maxima, minima : int arrays
         Ascending indices; as many of one as of the other, and alternating.
     """
-    return _periodic_maxima(profile, prominence), _periodic_maxima(-profile, prominence)
+    # Twin crowns of exactly the same height would both stand out: an imperceptible slope ranks them.
+    ranked = profile + np.arange(len(profile)) * (_TIE * np.ptp(profile) / len(profile))
+    return _periodic_maxima(ranked, prominence), _periodic_maxima(-ranked, prominence)
 
 
 def sulcal_depth(points: ArrayLike, contour: ArrayLike, closing_radius: float = 10.0) -> FloatArray:

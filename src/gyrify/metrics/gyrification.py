@@ -7,7 +7,7 @@ from typing import Literal, get_args
 
 import numpy as np
 import shapely
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
 from gyrify.errors import ConfigError
@@ -28,6 +28,8 @@ Definition = Literal["hull", "closing", "exposed"]
 _TOUCH = 1e-3
 # Longest contour edge when looking for exposed parts, as a fraction of the radius.
 _FINEST = 0.2
+# Halvings of an edge to find where its exposed part ends.
+_BISECTIONS = 4
 
 
 def gyrification_index(
@@ -93,19 +95,36 @@ def closing_length(offset: shapely.LinearRing, radius: float) -> float:
 def exposed_length(tissue: shapely.Polygon, radius: float) -> float:
     """Length [mm] of the part of a polygon's outline that a disc of the radius can touch from outside.
 
-    The disc that touches an edge at its midpoint enters the tissue by ``radius`` less its distance to the
-    outline; between midpoints that overlap is interpolated to find where the exposed part ends.
+    Whether it can is asked at the middle of each edge; where the answer changes between two neighbouring
+    edges, the end of the exposed part is found by bisection.
     """
     start = _short_edges(tissue, radius * _FINEST)
     edge = following(start) - start
     length = np.hypot(edge[:, 0], edge[:, 1])
-    outwards = np.column_stack([edge[:, 1], -edge[:, 0]]) / length[:, None]
-    midpoint = start + 0.5 * edge
-    outline = cKDTree(np.concatenate([start, midpoint]), balanced_tree=False, compact_nodes=False)
-    distance, _ = outline.query(midpoint + radius * outwards, distance_upper_bound=radius)
-    margin = np.minimum(distance, radius) - radius * (1 - _TOUCH)
-    between = 0.5 * (length + following(length))
-    return float(between @ _positive_part(margin, following(margin)))
+    along = edge / length[:, None]
+    outwards = np.column_stack([along[:, 1], -along[:, 0]])
+    middle = start + 0.5 * edge
+    outline = cKDTree(np.concatenate([start, middle]), balanced_tree=False, compact_nodes=False)
+
+    def touches(points: FloatArray, normals: FloatArray) -> NDArray[np.bool_]:
+        reach = radius * (1 - _TOUCH)
+        nearest, _ = outline.query(points + radius * normals, distance_upper_bound=reach)
+        free: NDArray[np.bool_] = np.isinf(nearest)
+        return free
+
+    exposed = touches(middle, outwards)
+    left = np.flatnonzero(exposed != following(exposed))
+    right = (left + 1) % len(start)
+    # Positions relative to the vertex both edges share, from the middle of one to the middle of the other.
+    low, high = -0.5 * length[left], 0.5 * length[right]
+    for _ in range(_BISECTIONS):
+        at = 0.5 * (low + high)
+        before = at < 0
+        own = np.where(before, left, right)
+        same = touches(start[right] + at[:, None] * along[own], outwards[own]) == exposed[left]
+        low, high = np.where(same, at, low), np.where(same, high, at)
+    end = 0.5 * (low + high)
+    return float(length @ exposed + np.where(exposed[left], end, -end).sum())
 
 
 def _short_edges(tissue: shapely.Polygon, longest: float) -> FloatArray:
@@ -118,10 +137,3 @@ def _short_edges(tissue: shapely.Polygon, longest: float) -> FloatArray:
         lengths = edge_lengths(vertices)
     vertices = vertices[lengths > 0]
     return vertices if ring.is_ccw else vertices[::-1]
-
-
-def _positive_part(left: FloatArray, right: FloatArray) -> FloatArray:
-    """Return the fraction of each interval on which the linear function with these end values is positive."""
-    low, high = np.minimum(left, right), np.maximum(left, right)
-    crossing = np.where(low < 0, high / np.where(high > low, high - low, 1.0), 1.0)
-    return np.where(high > 0, crossing, 0.0)
