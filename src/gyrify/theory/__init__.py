@@ -1,5 +1,45 @@
 """Exact onset of folding, independent of the two-dimensional code and a reference to verify it against."""
 
 from gyrify.theory.annulus import Annulus, BaseState, base_state
+from gyrify.theory.bilayer import INCOMPRESSIBLE, Bilayer
+from gyrify.theory.half_space import (
+    Wrinkle,
+    asymptotic_wrinkle,
+    critical_surface,
+    critical_wrinkle,
+    neutral_curve,
+)
+from gyrify.theory.modes import Mode, SecondVariation, lowest_eigenvalue, surface_limit
+from gyrify.theory.onset import (
+    Crossing,
+    Margin,
+    critical_growth_ratio,
+    critical_growth_time,
+    crossings,
+    stability_map,
+    stability_margin,
+)
 
-__all__ = ["Annulus", "BaseState", "base_state"]
+__all__ = [
+    "INCOMPRESSIBLE",
+    "Annulus",
+    "BaseState",
+    "Bilayer",
+    "Crossing",
+    "Margin",
+    "Mode",
+    "SecondVariation",
+    "Wrinkle",
+    "asymptotic_wrinkle",
+    "base_state",
+    "critical_growth_ratio",
+    "critical_growth_time",
+    "critical_surface",
+    "critical_wrinkle",
+    "crossings",
+    "lowest_eigenvalue",
+    "neutral_curve",
+    "stability_map",
+    "stability_margin",
+    "surface_limit",
+]

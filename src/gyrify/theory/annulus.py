@@ -38,32 +38,33 @@ class BaseState:
         t [time].
     line : Line
         The elements across the wall.
-    nodal_radius : (n_nodes,) float array
-        Deformed radius r of the nodes [mm].
+    displacement : (n_nodes,) float array
+        r - R of the nodes [mm].
     axial_stretch : float
         F_33 [-].
     residual : float
-        Largest out-of-balance nodal force / (E_G x wall) [-].
+        Largest out-of-balance nodal force / (E_G x outer radius) [-].
     """
 
     annulus: Annulus
     growth_time: float
     line: Line
-    nodal_radius: FloatArray
+    displacement: FloatArray
     axial_stretch: float
     residual: float
 
     def radius(self, reference_radius: ArrayLike) -> FloatArray:
         """Deformed radius r [mm] of reference radii R [mm], shaped as given."""
         places = np.asarray(reference_radius, dtype=np.float64)
-        return (self.line.at(places.ravel())[0] @ self.nodal_radius).reshape(places.shape)
+        return places + (self.line.at(places.ravel())[0] @ self.displacement).reshape(places.shape)
 
     def stretches(self, reference_radius: ArrayLike) -> FloatArray:
         """Principal stretches (r', r/R, F_33) [-] as (n, 3) at reference radii (n,) [mm]."""
         places = np.atleast_1d(np.asarray(reference_radius, dtype=np.float64))
         values, slopes = self.line.at(places)
-        along = values @ self.nodal_radius / places
-        return np.stack([slopes @ self.nodal_radius, along, np.full_like(along, self.axial_stretch)], axis=1)
+        along = 1.0 + values @ self.displacement / places
+        across = 1.0 + slopes @ self.displacement
+        return np.stack([across, along, np.full_like(along, self.axial_stretch)], axis=1)
 
     def response(self, reference_radius: ArrayLike) -> Response:
         """Energy, stress and tangent (`Response`) at reference radii (n,) [mm]."""
@@ -80,11 +81,11 @@ class BaseState:
 
 @dataclass(frozen=True, eq=False)
 class _RadialProblem:
-    """The discrete energy of r(R) and F_33; stretches are linear in the unknowns."""
+    """The discrete energy of r - R and F_33 - 1; stretches less one are linear in the unknowns."""
 
     annulus: Annulus
     line: Line
-    # (n_points, 3, n_nodes + 1): stretches at the points per unknown
+    # (n_points, 3, n_free): stretches at the points per unknown
     strain: FloatArray
     free: NDArray[np.bool_]
 
@@ -103,11 +104,10 @@ class _RadialProblem:
     def solve(self, unknowns: FloatArray, growth_time: float) -> tuple[FloatArray, float]:
         """Newton's method; raises FloatingPointError where it does not converge."""
         area = self.line.weights * self.line.points
-        fixed = self._stretch(unknowns) - self.strain @ unknowns[self.free]
-        scale = self.annulus.young_modulus * (self.annulus.outer_radius - self.annulus.inner_radius)
+        scale = self.annulus.young_modulus * self.annulus.outer_radius
         smallest = np.inf
         for _ in range(_MAX_NEWTON):
-            stretch = fixed + self.strain @ unknowns[self.free]
+            stretch = 1.0 + self.strain @ unknowns[self.free]
             if np.any(stretch <= 0.0):
                 raise FloatingPointError
             response = self.annulus.response(self.line.points, stretch, growth_time)
@@ -122,11 +122,6 @@ class _RadialProblem:
             unknowns = unknowns.copy()
             unknowns[self.free] -= np.linalg.solve(tangent, force)
         raise FloatingPointError
-
-    def _stretch(self, unknowns: FloatArray) -> FloatArray:
-        """Stretches (n_points, 3) of all the unknowns, fixed ones included."""
-        along = self.line.values @ unknowns[:-1] / self.line.points
-        return np.stack([self.line.slopes @ unknowns[:-1], along, np.full_like(along, unknowns[-1])], axis=1)
 
 
 def base_state(
@@ -163,7 +158,7 @@ def base_state(
     problem = _RadialProblem.build(annulus)
     if guess is not None and np.array_equal(guess.line.nodes, problem.line.nodes):
         try:
-            start = np.append(guess.nodal_radius, guess.axial_stretch)
+            start = np.append(guess.displacement, guess.axial_stretch - 1.0)
             return _state(problem, time, *problem.solve(start, time))
         except (FloatingPointError, np.linalg.LinAlgError):
             pass  # too far away: step from the start instead
@@ -171,12 +166,12 @@ def base_state(
 
 
 def _state(problem: _RadialProblem, time: float, unknowns: FloatArray, residual: float) -> BaseState:
-    return BaseState(problem.annulus, time, problem.line, unknowns[:-1], float(unknowns[-1]), residual)
+    return BaseState(problem.annulus, time, problem.line, unknowns[:-1], 1.0 + float(unknowns[-1]), residual)
 
 
 def _stepped(problem: _RadialProblem, time: float) -> BaseState:
     """Follow the state from no growth, halving the step where Newton's method fails."""
-    unknowns, residual, done = np.append(problem.line.nodes, 1.0), 0.0, 0.0
+    unknowns, residual, done = np.zeros(len(problem.free)), 0.0, 0.0
     step = min(1.0, _LARGEST_STEP / max(problem.annulus.growth_rate * time, 1e-12))
     while done < 1.0:
         target = min(1.0, done + step)

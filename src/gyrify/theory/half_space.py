@@ -31,10 +31,12 @@ __all__ = [
 FloatArray = NDArray[np.float64]
 
 # Loads scanned, as parts of the load (g - 1) of the bare surface, which is always critical.
-_LOAD_PARTS = np.geomspace(1e-4, 2.0, 36)
+_LOAD_PARTS = np.geomspace(1e-4, 2.0, 28)
 _SURFACE_LOADS = 1.0 + np.geomspace(1e-2, 4.0, 40)
 _SCALED_THICKNESSES = np.geomspace(0.03, 8.0, 28)
 _TINY = 1e-9
+_EXACT = 1e-13
+_ROUGH = 1e-3
 
 
 @dataclass(frozen=True)
@@ -79,8 +81,8 @@ def dispersion(bilayer: Bilayer, load: float, scaled_thickness: ArrayLike) -> Fl
     Returns
     -------
     (n,) float array
-        Lowest surface stiffness / (k x Young's modulus of the film) [-]; negative means unstable. Beyond
-        onset it may jump through minus infinity, where a film is unstable even if its surface is held.
+        Lowest surface stiffness / (k x Young's modulus of the film) [-]; negative means unstable. Minus
+        infinity where the bilayer is unstable even if its surface is held.
 
     Raises
     ------
@@ -109,7 +111,10 @@ def neutral_curve(bilayer: Bilayer, scaled_thickness: ArrayLike) -> FloatArray:
         Lowest critical g [-] of each wave; infinite where there is none up to twice the
         growth strain that makes the bare film's surface unstable.
     """
-    waves = np.atleast_1d(np.asarray(scaled_thickness, dtype=np.float64))
+    return _neutral(bilayer, np.atleast_1d(np.asarray(scaled_thickness, dtype=np.float64)), _EXACT)
+
+
+def _neutral(bilayer: Bilayer, waves: FloatArray, tolerance: float) -> FloatArray:
     loads = 1.0 + _LOAD_PARTS * (critical_surface(bilayer).load - 1.0)
     film, below = bilayer.matrices("film", loads), bilayer.half_space("substrate", loads)
     curve = np.full(len(waves), np.inf)
@@ -117,7 +122,7 @@ def neutral_curve(bilayer: Bilayer, scaled_thickness: ArrayLike) -> FloatArray:
         stiffness = lowest_stiffness(layered_stiffness(film, below, np.full(len(loads), kh)))
         bracket = _first_sign_change(loads, stiffness)
         if bracket is not None:
-            curve[i] = _root(bilayer, kh, *bracket)
+            curve[i] = _root(bilayer, kh, *bracket, tolerance)
     return curve
 
 
@@ -129,12 +134,14 @@ def _first_sign_change(loads: FloatArray, stiffness: FloatArray) -> tuple[float,
     return float(np.append(1.0, loads)[unstable[0]]), float(loads[unstable[0]])
 
 
-def _root(bilayer: Bilayer, kh: float, low: float, high: float) -> float:
+def _root(bilayer: Bilayer, kh: float, low: float, high: float, tolerance: float) -> float:
+    """Load between two others at which one wave is neutral, to a relative tolerance in g - 1."""
+
     def stiffness(load: float) -> float:
-        # Bounded, so that a jump through minus infinity does not slow the root-finding.
+        # Bounded, so that minus infinity does not break the root-finding.
         return max(float(dispersion(bilayer, load, kh)[0]), -1.0)
 
-    return float(brentq(stiffness, low, high, xtol=1e-13, rtol=1e-13))
+    return float(brentq(stiffness, low, high, xtol=tolerance * (high - 1.0), rtol=_EXACT))
 
 
 def critical_surface(bilayer: Bilayer) -> Wrinkle:
@@ -155,7 +162,6 @@ def critical_surface(bilayer: Bilayer) -> Wrinkle:
     SolveError
         If nothing is critical up to g = 5.
     """
-
     stiffness = lowest_stiffness(bilayer.half_space("film", _SURFACE_LOADS))
     bracket = _first_sign_change(_SURFACE_LOADS, stiffness)
     if bracket is None:
@@ -167,7 +173,9 @@ def critical_surface(bilayer: Bilayer) -> Wrinkle:
 
 
 def critical_wrinkle(bilayer: Bilayer) -> Wrinkle:
-    """First wave of any length to lose stability as the load rises from 1.
+    """First wave to lose stability as the load rises from 1.
+
+    Waves of k h between 0.03 and 8 are tried, and the surface limit for shorter ones.
 
     Parameters
     ----------
@@ -180,14 +188,15 @@ def critical_wrinkle(bilayer: Bilayer) -> Wrinkle:
         The surface limit where it comes first or at the same load.
     """
     surface = critical_surface(bilayer)
-    curve = neutral_curve(bilayer, _SCALED_THICKNESSES)
+    # A rough curve finds the valley; then its floor is sought.
+    curve = _neutral(bilayer, _SCALED_THICKNESSES, _ROUGH)
     best = int(np.argmin(curve))
-    if curve[best] >= surface.load - _TINY:
+    if curve[best] >= 1.0 + (1.0 + _ROUGH) * (surface.load - 1.0):
         return surface
     ends = np.log(_SCALED_THICKNESSES[[max(best - 1, 0), min(best + 1, len(curve) - 1)]])
-    low, high = 1.0 + 0.8 * (curve[best] - 1.0), 1.0 + 1.1 * (curve[best] - 1.0)
+    low, high = 1.0 + 0.5 * (curve[best] - 1.0), 1.0 + 1.3 * (curve[best] - 1.0)
     wave = minimize_scalar(
-        lambda log_kh: _root(bilayer, float(np.exp(log_kh)), low, high),
+        lambda log_kh: _root(bilayer, float(np.exp(log_kh)), low, high, _EXACT),
         bounds=ends,
         method="bounded",
         options={"xatol": 1e-5},

@@ -16,8 +16,9 @@ FloatArray = NDArray[np.float64]
 # H = _ACROSS q' + _ALONG q with q = (U, V)
 _ACROSS = np.array([[1.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 1.0]])
 _ALONG = np.array([[0.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, 0.0]])
-# Largest growth exponent of one step through a film, lest the growing exponentials drown the others.
-_STEP = 4.0
+# Largest growth exponent of one step through a film, lest the growing exponentials drown the others and a
+# change of sign be passed unseen.
+_STEP = 2.0
 
 
 def state_matrix(tangent: FloatArray, incompressible_stretch: ArrayLike | None = None) -> FloatArray:
@@ -88,20 +89,26 @@ def layered_stiffness(matrix: FloatArray, below: FloatArray, scaled_thickness: A
     Returns
     -------
     (..., 2, 2) float array
-        Z [Pa], symmetric. It jumps through minus infinity where the film is unstable even if its top is held.
+        Z [Pa], symmetric; NaN where the film is unstable even if its top is held, and the support's NaN.
     """
     thickness = np.asarray(scaled_thickness, dtype=np.float64)
     rates = np.max(np.abs(np.linalg.eigvals(matrix)), axis=-1)
     steps = max(1, int(np.ceil(np.max(rates * thickness) / _STEP)))
     passage = expm(matrix * (thickness / steps)[..., None, None])
-    stiffness = np.broadcast_to(below, (*passage.shape[:-2], 2, 2))
+    support = np.broadcast_to(below, (*passage.shape[:-2], 2, 2))
+    held = np.asarray(np.isfinite(support).all(axis=(-1, -2)))
+    stiffness = np.where(held[..., None, None], support, 0.0)
     for _ in range(steps):
         surface = passage[..., :2, :2] + passage[..., :2, 2:] @ stiffness
         traction = passage[..., 2:, :2] + passage[..., 2:, 2:] @ stiffness
+        # The determinant starts at one; where it changes sign, Z passes minus infinity on its way up.
+        held = held & (np.linalg.det(surface) > 0.0)
+        surface = np.where(held[..., None, None], surface, np.eye(2))
         stiffness = np.swapaxes(
             np.linalg.solve(np.swapaxes(surface, -1, -2), np.swapaxes(traction, -1, -2)), -1, -2
         )
-    return stiffness
+        stiffness = np.where(held[..., None, None], stiffness, 0.0)
+    return np.where(held[..., None, None], stiffness, np.nan)
 
 
 def lowest_stiffness(stiffness: FloatArray) -> FloatArray:
