@@ -31,7 +31,7 @@ if TYPE_CHECKING:
         measure,
     )
     from gyrify.outputs import write_outputs
-    from gyrify.simulate import Progress, resume, simulate
+    from gyrify.simulation import Progress, resume, simulate
     from gyrify.store import History
     from gyrify.summary import measure_state, summarise
 
@@ -49,7 +49,7 @@ _HOMES = {
     "Measures": "metrics",
     "Mesh": "mesh",
     "MeshError": "errors",
-    "Progress": "simulate",
+    "Progress": "simulation",
     "SolveError": "errors",
     "cortical_thickness": "metrics",
     "growth_ratio_from_scaling": "metrics",
@@ -58,8 +58,8 @@ _HOMES = {
     "length_increase": "metrics",
     "measure": "metrics",
     "measure_state": "summary",
-    "resume": "simulate",
-    "simulate": "simulate",
+    "resume": "simulation",
+    "simulate": "simulation",
     "summarise": "summary",
     "write_outputs": "outputs",
 }

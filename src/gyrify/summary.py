@@ -127,8 +127,6 @@ def warnings(summary: dict[str, Any]) -> list[str]:
         )
     if summary["self_intersecting"]:
         found.append("The contour crosses itself: the state is not physical. Set contact.enabled = true.")
-    if summary["stable"] is False:
-        found.append("The final state is an unstable equilibrium: an arbitrarily small disturbance leaves it.")
     return found
 
 

@@ -12,7 +12,7 @@ from gyrify.cli.streams import complain
 from gyrify.metrics import gyrification_index
 
 if TYPE_CHECKING:
-    from gyrify.simulate import Observer, Progress
+    from gyrify.simulation import Observer, Progress
 
 # Seconds between two updates of the bar: the gyrification index is only computed for what is shown.
 _PAUSE = 0.1

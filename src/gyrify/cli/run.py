@@ -16,7 +16,7 @@ from gyrify.cli.streams import complain, print_json, say
 from gyrify.errors import SolveError
 
 if TYPE_CHECKING:
-    from gyrify.simulate import Observer
+    from gyrify.simulation import Observer
     from gyrify.store import History
 
 DEFAULT = Overrides()
@@ -48,10 +48,13 @@ def run(
     """
     resolved = overrides.resolve(config)
     folder = out if out is not None else Path("runs") / resolved.config_hash[:12]
-    from gyrify.simulate import simulate
+    from gyrify.simulation import simulate
 
     return _carry_out(
-        lambda observers: simulate(resolved, folder, observers=observers, overwrite=overwrite), folder, json, quiet
+        lambda observers: simulate(resolved, folder, observers=observers, overwrite=overwrite),
+        folder,
+        json,
+        quiet,
     )
 
 
@@ -69,9 +72,11 @@ def resume(
     quiet : bool
         Show no progress.
     """
-    from gyrify.simulate import resume as continue_run
+    from gyrify.simulation import resume as continue_run
 
-    return _carry_out(lambda observers: continue_run(run_folder, observers=observers), run_folder, json, quiet)
+    return _carry_out(
+        lambda observers: continue_run(run_folder, observers=observers), run_folder, json, quiet
+    )
 
 
 def _carry_out(solve: Callable[[list[Observer]], History], folder: Path, json: bool, quiet: bool) -> int:
