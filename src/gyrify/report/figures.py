@@ -24,9 +24,13 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 FONT: Final = "DejaVu Sans"
-# Tissues differ in lightness, the outline in hue as well (Okabe-Ito): told apart by all eyes and in grey print.
+# Tissues differ in lightness, the outline in hue as well (Okabe-Ito): all eyes tell them apart, in print too.
 COLOURS: Final = {"grey": "#a39c97", "white": "#f3eee3", "line": "#1f1f1f", "outline": "#d55e00"}
-OUTLINE: Final[dict[str, Any]] = {"color": COLOURS["outline"], "linewidth": 1.0, "linestyle": (0, (3, 1.5))}
+OUTLINE: Final[dict[str, Any]] = {
+    "color": COLOURS["outline"],
+    "linewidth": 1.0,
+    "linestyle": (0, (3, 1.5)),
+}
 MM: Final = 1 / 25.4
 MARGIN_MM: Final = 3.0
 FOOTER_MM: Final = 13.0
