@@ -1,0 +1,266 @@
+r"""Fields of a state: strains, stresses and contour quantities as plain arrays.
+
+Everything follows from the stored displacement and the configuration. With the total deformation gradient F
+(in the plane; F33 = 1), the growth tensor F_g and F_e = F F_g^{-1}, all with their 33 entries:
+
+.. math::
+   J = \det F, \quad J_e = \det F_e, \quad J_g = \det F_g, \quad J = J_e J_g, \\
+   \sigma = J_e^{-1} P_e F_e^T = 2 W_1 J_e^{-1} F_e F_e^T + W_J I .
+
+The Cauchy stress is that of the elastic energy; viscous stress of Kelvin-Voigt dissipation is not part of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from gyrify.config.run_sections import ALL_FIELDS, OutputField
+from gyrify.metrics import cortical_thickness
+from gyrify.model import Slice
+from gyrify.physics.growth import growth_stretch, growth_tensor, out_of_plane_growth
+from gyrify.physics.neo_hookean import derivatives
+from gyrify.solve.types import FloatArray
+from gyrify.store.history import History
+
+# Fields with a value per point; the others have one per cell.
+POINT_FIELDS: Final[frozenset[OutputField]] = frozenset(
+    {"displacement", "thickness", "curvature", "contact_force"}
+)
+# Point fields that live on the contour alone.
+CONTOUR_FIELDS: Final[frozenset[OutputField]] = frozenset({"thickness", "curvature", "contact_force"})
+# Fields that do not change with growth.
+STATIC_FIELDS: Final[frozenset[OutputField]] = frozenset({"region"})
+
+UNITS: Final[dict[OutputField, str]] = {
+    "displacement": "mm",
+    "region": "0 white, 1 grey",
+    "growth_stretch": "-",
+    "J": "-",
+    "J_elastic": "-",
+    "J_growth": "-",
+    "cauchy_stress": "Pa",
+    "von_mises": "Pa",
+    "mean_stress": "Pa",
+    "circumferential_stress": "Pa",
+    "thickness": "mm",
+    "curvature": "1/mm",
+    "contact_force": "Pa mm",
+}
+
+
+def fields(
+    history: History, index: int = -1, names: Sequence[OutputField] = ALL_FIELDS
+) -> dict[OutputField, FloatArray]:
+    """Fields of one state of a run.
+
+    Parameters
+    ----------
+    history : History
+        The run.
+    index : int
+        State; negative indices count from the end.
+    names : sequence of str
+        Fields wanted, of those that ``output.fields`` may name.
+
+    Returns
+    -------
+    dict
+        Array by name: ``displacement`` (n_points, 2) [mm]; ``region`` (n_cells,) 0 white, 1 grey;
+        ``growth_stretch``, ``J``, ``J_elastic``, ``J_growth`` (n_cells,) [-]; ``cauchy_stress``
+        (n_cells, 3, 3) [Pa]; ``von_mises``, ``mean_stress``, ``circumferential_stress`` (n_cells,) [Pa];
+        ``thickness`` [mm] and ``curvature`` [1/mm] (n_points,), NaN off the contour; ``contact_force``
+        (n_points, 2) [Pa mm] per unit thickness of the slice, zero off the contour.
+
+    Raises
+    ------
+    HistoryError
+        If there is no such state.
+    """
+    number = index + len(history) if index < 0 else index
+    u = history.displacement(number)
+    u_start = history.displacement(max(number - 1, 0))
+    state = FieldMaker(history.slice).state(u, float(history.fractions[number]), u_start)
+    return {name: state[name] for name in names}
+
+
+class FieldMaker:
+    """Fields of any state of one problem.
+
+    Parameters
+    ----------
+    problem : Slice
+        The tissue.
+    """
+
+    def __init__(self, problem: Slice) -> None:
+        self.problem = problem
+        simplices, n_cells = problem.simplices, problem.mesh.n_cells
+        n_nodes = simplices.cells.shape[1]
+        rows = np.repeat(np.arange(n_cells), n_nodes)
+        entries = np.concatenate([simplices.gradients[:, :, axis].ravel() for axis in range(2)])
+        places = (np.concatenate([rows, rows + n_cells]), np.tile(simplices.cells.ravel(), 2))
+        self._gradient = csr_array((entries, places), shape=(2 * n_cells, problem.mesh.n_points))
+        self.along = np.stack([-problem.mesh.across[:, 1], problem.mesh.across[:, 0]])
+
+    def state(self, u: FloatArray, fraction: float, u_start: FloatArray) -> StateFields:
+        """Fields of a state.
+
+        Parameters
+        ----------
+        u : (n_points, 2) float array
+            Displacement [mm].
+        fraction : float
+            Growth time over the duration of growth.
+        u_start : (n_points, 2) float array
+            Displacement at the start of the increment [mm], on which the activation distance of contact
+            depends.
+        """
+        return StateFields(self, u, fraction, u_start)
+
+    def deformation(self, u: FloatArray) -> FloatArray:
+        """(2, 2, n_cells) total deformation gradient F_ij = d x_i / d X_j in the plane."""
+        F = np.stack([(self._gradient @ np.ascontiguousarray(u[:, i])).reshape(2, -1) for i in range(2)])
+        F[0, 0] += 1.0
+        F[1, 1] += 1.0
+        return F
+
+
+class StateFields:
+    """Fields of one state, computed when asked for; see `fields` for names, shapes and units."""
+
+    def __init__(self, maker: FieldMaker, u: FloatArray, fraction: float, u_start: FloatArray) -> None:
+        self._maker, self._problem = maker, maker.problem
+        self._u, self._u_start = u, u_start
+        self._time = fraction * maker.problem.config.growth.duration
+        self._getters: dict[OutputField, Callable[[], FloatArray]] = {
+            "displacement": lambda: self._u,
+            "region": lambda: self._problem.mesh.region.astype(np.float64),
+            "growth_stretch": lambda: self._stretch,
+            "J": lambda: self._J,
+            "J_elastic": lambda: self._J_e,
+            "J_growth": lambda: self._problem.volume_growth(self._time),
+            "cauchy_stress": self._cauchy_stress,
+            "von_mises": self._von_mises,
+            "mean_stress": lambda: (self.stress[0] + self.stress[1] + self.stress[2]) / 3.0,
+            "circumferential_stress": self._circumferential_stress,
+            "thickness": self._thickness,
+            "curvature": lambda: self._on_contour(curvature(self._contour)),
+            "contact_force": self._contact_force,
+        }
+
+    def __getitem__(self, name: OutputField) -> FloatArray:
+        return self._getters[name]()
+
+    @cached_property
+    def _stretch(self) -> FloatArray:
+        """(n_cells,) growth stretch of the tissue."""
+        return growth_stretch(self._problem.rate, self._time, self._problem.config.growth.stretch)
+
+    @cached_property
+    def _F(self) -> FloatArray:
+        return self._maker.deformation(self._u)
+
+    @cached_property
+    def _J(self) -> FloatArray:
+        return np.asarray(self._F[0, 0] * self._F[1, 1] - self._F[0, 1] * self._F[1, 0])
+
+    @cached_property
+    def _J_e(self) -> FloatArray:
+        return np.asarray(self._J / self._problem.volume_growth(self._time))
+
+    @cached_property
+    def _F_e(self) -> FloatArray:
+        """(2, 2, n_cells) elastic deformation gradient in the plane."""
+        problem, F = self._problem, self._F
+        if not problem.tangential.any():
+            return F / self._stretch
+        # The inverse of lambda (I - N N) + N N is the same form with 1 / lambda.
+        inverse = growth_tensor(1.0 / self._stretch, problem.tangential, problem.mesh.across)
+        return np.einsum("ikc,ckj->ijc", F, inverse)
+
+    @cached_property
+    def stress(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Cauchy stress components 11, 22, 33, 12, each (n_cells,) [Pa]; 13 and 23 are zero."""
+        problem, F = self._problem, self._F_e
+        f33 = 1.0 / out_of_plane_growth(self._stretch, problem.config.growth.out_of_plane)
+        b11, b22 = F[0, 0] ** 2 + F[0, 1] ** 2, F[1, 0] ** 2 + F[1, 1] ** 2
+        b33, b12 = f33**2, F[0, 0] * F[1, 0] + F[0, 1] * F[1, 1]
+        W_1, W_J, *_ = derivatives.py_func(b11 + b22 + b33, self._J_e, problem.mu, problem.kappa)
+        factor = 2.0 * W_1 / self._J_e
+        return factor * b11 + W_J, factor * b22 + W_J, factor * b33 + W_J, factor * b12
+
+    def _cauchy_stress(self) -> FloatArray:
+        s11, s22, s33, s12 = self.stress
+        tensor = np.zeros((s11.size, 3, 3))
+        tensor[:, 0, 0], tensor[:, 1, 1], tensor[:, 2, 2] = s11, s22, s33
+        tensor[:, 0, 1] = tensor[:, 1, 0] = s12
+        return tensor
+
+    def _von_mises(self) -> FloatArray:
+        """sqrt(3/2 s:s) of the three-dimensional deviator s [Pa]."""
+        s11, s22, s33, s12 = self.stress
+        squares = (s11 - s22) ** 2 + (s22 - s33) ** 2 + (s33 - s11) ** 2
+        return np.sqrt(0.5 * squares + 3.0 * s12 * s12)
+
+    def _circumferential_stress(self) -> FloatArray:
+        """Normal stress along the layers as they lie now [Pa].
+
+        The direction is the pushed-forward tangent t = F T, T perpendicular to the reference direction N
+        across the layers. In the plane it is also perpendicular to the pushed-forward normal F^{-T} N.
+        """
+        s11, s22, _, s12 = self.stress
+        F, (T1, T2) = self._F, self._maker.along
+        t1, t2 = F[0, 0] * T1 + F[0, 1] * T2, F[1, 0] * T1 + F[1, 1] * T2
+        projected = s11 * t1 * t1 + s22 * t2 * t2 + 2.0 * s12 * t1 * t2
+        return np.asarray(projected / (t1 * t1 + t2 * t2))
+
+    @cached_property
+    def _contour(self) -> FloatArray:
+        mesh = self._problem.mesh
+        return np.asarray(mesh.points[mesh.contour] + self._u[mesh.contour])
+
+    def _on_contour(self, values: FloatArray) -> FloatArray:
+        everywhere = np.full(self._problem.mesh.n_points, np.nan)
+        everywhere[self._problem.mesh.contour] = values
+        return everywhere
+
+    def _thickness(self) -> FloatArray:
+        mesh = self._problem.mesh
+        interface = mesh.points[mesh.interface] + self._u[mesh.interface]
+        return self._on_contour(cortical_thickness(self._contour, interface))
+
+    def _contact_force(self) -> FloatArray:
+        """Force of the barrier on each point, minus the gradient of the contact energy [Pa mm]."""
+        if not self._problem.config.contact.enabled:
+            return np.zeros_like(self._u)
+        gradient = self._problem.contact_energy(self._u_start).evaluate(self._u, 1).gradient
+        return np.zeros_like(self._u) if gradient is None else -gradient
+
+
+def curvature(contour: FloatArray) -> FloatArray:
+    r"""Signed curvature at the vertices of a closed contour, of the circle through each and its neighbours.
+
+    .. math:: k = \frac{2 \, a \times b}{|a| |b| |a + b|}
+
+    with a and b the edges before and after the vertex: positive where a counter-clockwise contour bulges
+    outwards (crowns), negative in sulci, and exactly 1/R for points on a circle of radius R.
+
+    Parameters
+    ----------
+    contour : (n, 2) float array
+        Vertices in order, counter-clockwise [mm].
+
+    Returns
+    -------
+    (n,) float array
+        k [1/mm].
+    """
+    z = contour[:, 0] + 1j * contour[:, 1]
+    before, after = z - np.roll(z, 1), np.roll(z, -1) - z
+    cross = (np.conj(before) * after).imag
+    return np.asarray(2.0 * cross / (np.abs(before) * np.abs(after) * np.abs(before + after)))
