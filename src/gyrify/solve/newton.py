@@ -68,6 +68,7 @@ def minimise(
     """
     before = (system.factorizations, system.analyses)
     value = total.value(u)
+    # MAX_NEWTON is what it comes to unless something else happens first.
     result, residual, iteration = Result.MAX_NEWTON, np.inf, 0
     if not np.isfinite(value):
         result = Result.INADMISSIBLE
@@ -86,9 +87,8 @@ def minimise(
         except SolveError:
             result = Result.SINGULAR
             break
-        step, value = _line_search(total, u, du, value, float(gradient @ du.ravel()[system.free]))
-        if step == 0.0:
-            result = Result.LINE_SEARCH if value == value else Result.BLOCKED
+        slope = float(gradient @ du.ravel()[system.free])
+        step, value, result = _line_search(total, u, du, value, slope)
         u = u + step * du
     work = Stats(iteration, system.factorizations - before[0], system.analyses - before[1])
     return Solution(u, result, residual, work)
@@ -128,15 +128,15 @@ def _direction(
 
 def _line_search(
     total: TotalEnergy, u: FloatArray, du: FloatArray, value: float, slope: float
-) -> tuple[float, float]:
-    """Step length and its energy: the first of a halving sequence that lowers the energy enough."""
+) -> tuple[float, float, Result]:
+    """First step of a halving sequence that lowers the energy enough, its energy, and how to go on."""
     step = total.max_step(u, du)
     if step < SMALLEST_STEP:
-        return 0.0, np.nan
+        return 0.0, value, Result.BLOCKED
     noise = ROUNDING * abs(value)
     while step >= SMALLEST_STEP:
         trial = total.value(u + step * du)
         if trial <= value + SUFFICIENT_DECREASE * step * slope + noise:
-            return step, trial
+            return step, trial, Result.MAX_NEWTON
         step *= 0.5
-    return 0.0, value
+    return 0.0, value, Result.LINE_SEARCH
