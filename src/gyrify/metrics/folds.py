@@ -130,13 +130,23 @@ def find_folds(contour: ArrayLike, gyrus_prominence: float = 0.3, samples: int =
     low_mode_shape : what the displacement is measured from.
     periodic_extrema : the detection alone, for any periodic profile such as the surface of a strip.
     """
+    require_detectable(gyrus_prominence, samples)
+    vertices = as_contour(contour)
+    return folds_about(low_mode_shape(vertices), vertices, gyrus_prominence, samples)
+
+
+def require_detectable(gyrus_prominence: float, samples: int) -> None:
+    """Raise `ConfigError` unless gyri can be sought with this prominence and number of samples."""
     require_positive("gyrus_prominence", gyrus_prominence)
     if samples < 16:
         raise ConfigError(f"samples = {samples} is out of range: it must be >= 16.", "The default is 2000.")
-    vertices = as_contour(contour)
-    points = resample(vertices, samples, keep_vertices=True)
-    displacement = low_mode_shape(vertices).displacement(points)
-    crowns, fundi = periodic_extrema(displacement, gyrus_prominence)
+
+
+def folds_about(shape: LowModeShape, contour: FloatArray, prominence: float, samples: int) -> Folds:
+    """`find_folds` about a shape that is known already."""
+    points = resample(contour, samples, keep_vertices=True)
+    displacement = shape.displacement(points)
+    crowns, fundi = periodic_extrema(displacement, prominence)
     return Folds(points, displacement, crowns, fundi)
 
 
@@ -161,7 +171,12 @@ def low_mode_shape(contour: ArrayLike) -> LowModeShape:
     MeshError
         If the contour is malformed.
     """
-    hull = ring_vertices(shapely.linestrings(as_contour(contour)).convex_hull.exterior)
+    return shape_of_hull(shapely.linestrings(as_contour(contour)).convex_hull)
+
+
+def shape_of_hull(convex_hull: shapely.Polygon) -> LowModeShape:
+    """`low_mode_shape` of a contour whose convex hull is known already."""
+    hull = ring_vertices(convex_hull.exterior)
     centre, to_circle = _area_ellipse(hull)
     height, phase = _elliptic(resample(hull, _SHAPE_SAMPLES), centre, to_circle)
     turn = np.angle(following(phase) * np.conj(np.roll(phase, 1)))

@@ -19,7 +19,7 @@ from gyrify.metrics.contour import (
     offset_outline,
     require_positive,
 )
-from gyrify.metrics.folds import Folds, depth_below, find_folds
+from gyrify.metrics.folds import Folds, depth_below, folds_about, require_detectable, shape_of_hull
 from gyrify.metrics.gap import simple_gap
 from gyrify.metrics.gyrification import closing_length, exposed_length
 
@@ -120,17 +120,19 @@ def measure(
         If the contour or the interface is malformed.
     """
     require_positive("closing_radius", closing_radius)
+    require_detectable(gyrus_prominence, samples)
     vertices, inner = as_contour(contour), as_contour(interface)
     crossing = not shapely.linearrings(vertices).is_simple
     tissue = filled(vertices) if crossing else shapely.Polygon(vertices)
     offset = offset_outline(tissue, closing_radius)
-    folds = find_folds(vertices, gyrus_prominence, samples)
+    hull = tissue.convex_hull
+    folds = folds_about(shape_of_hull(hull), vertices, gyrus_prominence, samples)
     depth = depth_below(folds.fundus_points, offset, closing_radius) if folds.n_gyri else np.zeros(1)
     crown, fundus = _thickness(folds, inner)
     length = float(edge_lengths(vertices).sum())
     exposed = exposed_length(tissue, closing_radius)
     return Measures(
-        gi_hull=length / float(tissue.convex_hull.length),
+        gi_hull=length / float(hull.length),
         gi_closing=length / closing_length(offset, closing_radius),
         gi_exposed=length / exposed if exposed > 0 else float("inf"),
         closing_radius=float(closing_radius),
