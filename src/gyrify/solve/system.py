@@ -9,7 +9,7 @@ import numpy as np
 from gyrify.energy.term import Evaluation, Pattern
 from gyrify.energy.total import FreePattern
 from gyrify.solve.linear import Factor, LinearSolver
-from gyrify.solve.types import IntArray
+from gyrify.solve.types import FloatArray, IntArray
 
 
 class System:
@@ -70,6 +70,10 @@ class System:
 
     def factorise(self, evaluations: Sequence[Evaluation], candidates: Callable[[], IntArray]) -> Factor:
         """Factor of the summed Hessian; ``candidates`` gives couplings where the pattern is too small."""
+        return self.factorise_data(self.assemble(evaluations, candidates))
+
+    def assemble(self, evaluations: Sequence[Evaluation], candidates: Callable[[], IntArray]) -> FloatArray:
+        """Values of the summed Hessian on the pattern; ``candidates`` as in `factorise`."""
         hessians = [e.hessian for e in evaluations if e.hessian is not None]
         if not all(self.pattern.holds(h.pattern) for h in hessians):
             needed = np.concatenate(
@@ -80,6 +84,10 @@ class System:
         data = np.zeros(self.pattern.rows.size)
         for hessian in hessians:
             self.pattern.add(hessian.pattern, hessian.values, data)
+        return data
+
+    def factorise_data(self, data: FloatArray) -> Factor:
+        """Factor of a matrix given by its values on the pattern."""
         self.factorizations += 1
         return self.solver.factorise(data)
 
