@@ -21,7 +21,7 @@ mutants: $(VENV)/.test
 	$(BIN)/python tools/mutants.py
 
 $(VENV)/.venv:
-	$(PYTHON) -c "import sys; sys.exit('gyrify needs Python 3.11 or newer; set PYTHON=...' * (sys.version_info < (3, 11)))"
+	@$(PYTHON) -c "import sys; sys.version_info >= (3, 11) or sys.exit('gyrify needs Python 3.11 or newer; set PYTHON=...')"
 	$(PYTHON) -m venv $(VENV)
 	touch $@
 
