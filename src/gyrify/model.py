@@ -21,6 +21,7 @@ from gyrify.physics.neo_hookean import lame_parameters
 from gyrify.solve.linear import linear_solver
 from gyrify.solve.newton import Criterion
 from gyrify.solve.quasistatic import State, Stepping
+from gyrify.solve.stability import Tangent
 from gyrify.solve.system import System
 
 # Barrier stiffness over Young's modulus of the cortex: sulci then rest at about half the activation distance.
@@ -120,6 +121,11 @@ class Slice:
         return area
 
     @cached_property
+    def free_mass(self) -> FloatArray:
+        """(n_free,) lumped reference area of each free degree of freedom [mm^2]."""
+        return np.asarray(np.repeat(self.lumped_area, self.mesh.n_dim)[self.free])
+
+    @cached_property
     def free(self) -> IntArray:
         """Free degrees of freedom."""
         is_free = np.ones(self.mesh.n_points, dtype=bool)
@@ -160,14 +166,23 @@ class Slice:
         across = np.where(self.tangential, 1.0, stretch)
         return np.asarray(stretch ** (self.mesh.n_dim - 1) * across * out_of_plane)
 
+    def tissue_energy(self, fraction: float, start_u: FloatArray) -> TotalEnergy:
+        """Energy of elasticity and contact alone, for an increment that starts at a displacement."""
+        terms: list[EnergyTerm] = [
+            self.elastic_energy(self.kinematics(fraction * self.config.growth.duration))
+        ]
+        if self.config.contact.enabled:
+            terms.append(self.contact_energy(start_u))
+        return TotalEnergy(terms)
+
+    def tangent(self, fraction: float, u: FloatArray, start_u: FloatArray, system: System) -> Tangent:
+        """Exact stiffness of elasticity and contact alone at a state."""
+        evaluations = self.tissue_energy(fraction, start_u).evaluate(u, project_psd=False)
+        return Tangent(evaluations, system, self.free_mass, lambda: self.candidates(u))
+
     def is_stable(self, fraction: float, u: FloatArray) -> bool:
         """Whether elastic and contact energy alone have a positive definite Hessian at a state."""
-        terms: list[EnergyTerm] = [self.elastic_energy(self.kinematics(fraction * self.config.growth.duration))]
-        if self.config.contact.enabled:
-            terms.append(self.contact_energy(u))
-        system = self.system(np.empty((0, 2), dtype=np.int64))
-        evaluations = TotalEnergy(terms).evaluate(u, project_psd=False)
-        return system.factorise(evaluations, lambda: self.candidates(u)).n_negative == 0
+        return self.tangent(fraction, u, u, self.system(np.empty((0, 2), dtype=np.int64))).is_stable
 
     def elastic_energy(self, kinematics: ElasticKinematics) -> ElasticEnergy:
         """Hyperelastic energy of grown cells."""

@@ -1,0 +1,191 @@
+r"""Stability of a state: inertia and lowest eigenpair of the tangent stiffness K against the mass M.
+
+.. math:: K v = \lambda M v, \quad \lambda \; \mathrm{[Pa/mm^2]}, \quad \textstyle\sum_i m_i |v_i|^2 = 1
+
+K is the exact Hessian on the free degrees of freedom, M the lumped reference area m_i of each point. A
+state is stable where K has no negative pivot. The lowest eigenvalue is found by shift-invert: where K is
+indefinite it is first shifted to K + tau M, with tau doubled until no pivot is negative, so that the
+eigenvalue nearest to the shift is the lowest one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as sla
+
+from gyrify.energy.term import Evaluation
+from gyrify.errors import SolveError
+from gyrify.solve.linear import Factor
+from gyrify.solve.system import System
+from gyrify.solve.types import FloatArray, IntArray
+
+# Largest residual of an eigenpair, ||K v - lambda M v|| over ||K|| ||v||.
+EIGEN_TOLERANCE = 1e-6
+_ARNOLDI_TOLERANCE = 1e-9
+# First shift over the largest diagonal entry of M^-1 K, and how often it may be doubled.
+_FIRST_SHIFT = 1e-5
+_DOUBLINGS = 60
+
+
+@dataclass(frozen=True, eq=False)
+class Eigenpair:
+    """Lowest eigenvalue of K v = lambda M v, with its vector.
+
+    Attributes
+    ----------
+    eigenvalue : float
+        lambda [Pa/mm^2]; negative where the state is unstable.
+    vector : (n_points, n_dim) float array
+        v [1/mm], with sum m_i |v_i|^2 = 1, zero where clamped; its sign is arbitrary.
+    residual : float
+        ||K v - lambda M v|| / (||K|| ||v||) [-], with the largest column norm of K for its norm.
+    """
+
+    eigenvalue: float
+    vector: FloatArray
+    residual: float
+
+
+@dataclass(frozen=True, eq=False)
+class Onset:
+    """Where a path first loses stability.
+
+    Attributes
+    ----------
+    growth_time : float
+        Growth time [time].
+    bracket : (float, float)
+        Growth times of the last stable and the first unstable state known [time].
+    eigenvalue : float
+        Lowest eigenvalue there [Pa/mm^2]; zero but for the tolerance of its root.
+    mode_number : int
+        Waves along the contour (along one period of a strip).
+    wavelength : float
+        Deformed length of the contour over the mode number [mm].
+    displacement : (n_points, n_dim) float array
+        The state [mm].
+    vector : (n_points, n_dim) float array
+        The mode, as in `Eigenpair` [1/mm]; where it is largest normal to the contour, it points outwards.
+    """
+
+    growth_time: float
+    bracket: tuple[float, float]
+    eigenvalue: float
+    mode_number: int
+    wavelength: float
+    displacement: FloatArray
+    vector: FloatArray
+
+
+class Tangent:
+    """Factorised tangent stiffness of a state.
+
+    Parameters
+    ----------
+    evaluations : sequence of Evaluation
+        Each energy term at the state, with its exact Hessian.
+    system : System
+        Linear system of the free degrees of freedom.
+    mass : (n_free,) float array
+        Diagonal of M [mm^2].
+    candidates : callable
+        Couplings near the state, for the pattern.
+
+    Attributes
+    ----------
+    n_negative : int
+        Number of negative pivots of K, that is of negative eigenvalues.
+    """
+
+    def __init__(
+        self,
+        evaluations: Sequence[Evaluation],
+        system: System,
+        mass: FloatArray,
+        candidates: Callable[[], IntArray],
+    ) -> None:
+        self._system, self.mass = system, mass
+        self._data = system.assemble(evaluations, candidates)
+        self._diagonal = system.pattern.indptr[:-1]
+        self._factor: Factor | None = system.factorise_data(self._data)
+        self.n_negative = self._factor.n_negative
+
+    @property
+    def is_stable(self) -> bool:
+        """Whether no pivot is negative."""
+        return self.n_negative == 0
+
+    def matrix(self) -> sp.csr_array:
+        """K on the free degrees of freedom, both triangles [Pa]."""
+        pattern = self._system.pattern
+        upper = sp.csr_array((self._data, pattern.cols, pattern.indptr), shape=(self.mass.size,) * 2)
+        return sp.csr_array(upper + sp.triu(upper, 1).T)
+
+    def lowest(self, guess: float = 0.0) -> Eigenpair:
+        """Lowest eigenpair.
+
+        Parameters
+        ----------
+        guess : float
+            About what the eigenvalue is, if known and negative [Pa/mm^2]: saves factorisations.
+
+        Returns
+        -------
+        Eigenpair
+
+        Raises
+        ------
+        SolveError
+            If none is found to the tolerance.
+        """
+        factor, root = self._definite(guess), np.sqrt(self.mass)
+        n = root.size
+        inverse = sla.LinearOperator((n, n), matvec=lambda x: root * factor.solve(root * x.ravel()))
+        start = np.random.default_rng(0).standard_normal(n)
+        try:
+            _, vectors = sla.eigsh(inverse, k=1, which="LA", v0=start, tol=_ARNOLDI_TOLERANCE)
+        except sla.ArpackNoConvergence as failure:
+            raise _unfound(f"the Lanczos iteration did not converge ({failure})") from failure
+        v = vectors[:, 0] / root
+        return self._checked(v / np.sqrt(v @ (self.mass * v)))
+
+    def _definite(self, guess: float) -> Factor:
+        """Factor of K, or of K + tau M where K is not positive definite; later calls make it invalid."""
+        if self.n_negative == 0:
+            if self._factor is None:
+                self._factor = self._system.factorise_data(self._data)
+            return self._factor
+        self._factor = None
+        tau = max(-1.2 * guess, _FIRST_SHIFT * float((self._data[self._diagonal] / self.mass).max()))
+        for _ in range(_DOUBLINGS):
+            shifted = self._data.copy()
+            shifted[self._diagonal] += tau * self.mass
+            factor = self._system.factorise_data(shifted)
+            if factor.n_negative == 0:
+                return factor
+            tau *= 2.0
+        raise _unfound("no shift makes the stiffness positive definite")
+
+    def _checked(self, v: FloatArray) -> Eigenpair:
+        """Eigenpair of a vector of unit mass, by its Rayleigh quotient."""
+        K = self.matrix()
+        force = K @ v
+        eigenvalue = float(v @ force)
+        scale = float(sla.norm(K, axis=0).max()) * float(np.linalg.norm(v))
+        residual = float(np.linalg.norm(force - eigenvalue * self.mass * v)) / scale
+        if not residual <= EIGEN_TOLERANCE:
+            raise _unfound(f"its residual of {residual:.1e} is above {EIGEN_TOLERANCE:.0e}")
+        full = np.zeros(self._system.n_dofs)
+        full[self._system.free] = v
+        return Eigenpair(eigenvalue, full.reshape(-1, self._system.n_dim), residual)
+
+
+def _unfound(reason: str) -> SolveError:
+    return SolveError(
+        f"The lowest eigenvalue of the stiffness was not found: {reason}.",
+        "Set stability.detect = false to run without it.",
+    )
