@@ -63,8 +63,9 @@ def test_index_gyri_scale_and_legend_are_written_large_enough() -> None:
     assert min(text.get_fontsize() for text in texts) >= 7
 
 
-def test_nothing_is_cut_off_or_overlaps() -> None:
-    figure = folded_figure(**slice_arrays(), gi=1.0449, n_gyri=8, title="A slice")
+@pytest.mark.parametrize("title", ["", "A slice", "A slice of which a great deal has to be said, " * 3])
+def test_nothing_is_cut_off_or_overlaps(title: str) -> None:
+    figure = folded_figure(**slice_arrays(), gi=1.0449, n_gyri=8, title=title)
     figure.canvas.draw()
     boxes = [text.get_window_extent() for text in figure.texts] + [figure.legends[0].get_window_extent()]
     boxes.append(figure.axes[0].get_window_extent())

@@ -58,28 +58,11 @@ def growth_ratio_from_scaling(
     ConfigError
         If an argument is out of range, or the law would have the white matter shrink.
     """
-    _require("area", area, "mm²", area > 0)
-    _require("aspect_ratio", aspect_ratio, "-", aspect_ratio >= 1, ">= 1")
-    _require("hole_fraction", hole_fraction, "-", 0 < hole_fraction < 1, "between 0 and 1")
-    for name, value, of in (
-        ("slice_thickness", slice_thickness, "mm"),
-        ("exponent", exponent, "-"),
-        ("growth", growth, "-"),
-    ):
-        _require(name, value, of, value > 0)
-    b = math.sqrt(area / (math.pi * aspect_ratio))
-    a = aspect_ratio * b
-    widest = b * (1 - hole_fraction)
-    in_range = 0 < cortical_thickness < widest
-    _require("cortical_thickness", cortical_thickness, "mm", in_range, f"between 0 and {widest:.3g}")
-    if unit not in LENGTH_UNITS:
-        raise ConfigError(
-            f"unit = {unit!r} is not a unit of length.", f"Choose one of {', '.join(LENGTH_UNITS)}."
-        )
-    interface = math.pi * (a - cortical_thickness) * (b - cortical_thickness)
-    cube = LENGTH_UNITS[unit] ** 3
-    grey = (1 + growth) ** 3 * (area - interface) * slice_thickness / cube
-    white = (interface - hole_fraction**2 * area) * slice_thickness / cube
+    for name, value in (("slice_thickness", slice_thickness), ("exponent", exponent), ("growth", growth)):
+        _require(name, value, "mm" if name == "slice_thickness" else "-", value > 0)
+    grey_area, white_area = _tissue_areas(cortical_thickness, area, aspect_ratio, hole_fraction)
+    depth = slice_thickness / _length_unit(unit) ** 3
+    grey, white = (1 + growth) ** 3 * grey_area * depth, white_area * depth
     white_growth = math.cbrt(math.pow(grey, exponent) / white) - 1
     if not white_growth > 0:
         raise ConfigError(
@@ -88,6 +71,30 @@ def growth_ratio_from_scaling(
             "Its prefactor of 1 ties it to a unit; the published value is in mm³.",
         )
     return growth / white_growth
+
+
+def _length_unit(unit: str) -> float:
+    """Return a unit of length in mm."""
+    if unit not in LENGTH_UNITS:
+        known = ", ".join(LENGTH_UNITS)
+        raise ConfigError(f"unit = {unit!r} is not a unit of length.", f"Choose one of {known}.")
+    return LENGTH_UNITS[unit]
+
+
+def _tissue_areas(
+    cortical_thickness: float, area: float, aspect_ratio: float, hole_fraction: float
+) -> tuple[float, float]:
+    """Return the initial areas [mm²] of grey and white matter of the hollow elliptic slice."""
+    _require("area", area, "mm²", area > 0)
+    _require("aspect_ratio", aspect_ratio, "-", aspect_ratio >= 1, ">= 1")
+    _require("hole_fraction", hole_fraction, "-", 0 < hole_fraction < 1, "between 0 and 1")
+    b = math.sqrt(area / (math.pi * aspect_ratio))
+    a = aspect_ratio * b
+    widest = b * (1 - hole_fraction)
+    in_range = 0 < cortical_thickness < widest
+    _require("cortical_thickness", cortical_thickness, "mm", in_range, f"between 0 and {widest:.3g}")
+    interface = math.pi * (a - cortical_thickness) * (b - cortical_thickness)
+    return area - interface, interface - hole_fraction**2 * area
 
 
 def growth_ratio_from_volumes(grey_increase: float = 4.6, white_increase: float = 1.9) -> float:

@@ -29,7 +29,7 @@ _TOUCH = 1e-3
 # Longest contour edge when looking for exposed parts, as a fraction of the radius.
 _FINEST = 0.2
 # Halvings of an edge to find where its exposed part ends.
-_BISECTIONS = 3
+_BISECTIONS = 4
 
 
 def gyrification_index(
