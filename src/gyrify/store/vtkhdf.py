@@ -7,8 +7,8 @@ deflate filters. To be small and quick to write, it uses what these allow:
   written (HDF5 reads them as zero);
 - of a value's four bytes only the sign and exponent byte is worth compressing; the mantissa is passed through
   in stored (uncompressed) blocks of the same deflate stream;
-- cell fields are rounded to 16 significant bits (relative error below 8e-6), so that their last byte vanishes;
-  displacements keep all 24 bits. The full double precision is in the journal;
+- the fields of cells are rounded to 16 significant bits (relative error at most 2^-16 = 1.5e-5), so that
+  their last byte vanishes; displacements and growth keep all 24 bits. The full precision is in the journal;
 - what does not change from step to step is written once, and every step points at it.
 """
 
@@ -180,9 +180,8 @@ def _write_fields(
 def _create(group: h5py.Group, name: OutputField, n_steps: int, n_values: int) -> h5py.h5d.DatasetID:
     """Empty dataset of all steps of a field, a chunk for each step and component."""
     layout = _LAYOUTS.get(name, Layout())
-    shape, chunk = (n_steps * n_values, layout.n_components), (n_values, 1)
-    if layout.n_components == 1:
-        shape, chunk = shape[:1], chunk[:1]
+    n_dims = 1 if layout.n_components == 1 else 2
+    shape, chunk = (n_steps * n_values, layout.n_components)[:n_dims], (n_values, 1)[:n_dims]
     filters = {"chunks": chunk, "shuffle": True, "compression": "gzip", "compression_opts": 1}
     return group.create_dataset(name, shape, dtype="<f4", **filters).id
 
