@@ -16,6 +16,7 @@ from gyrify.energy.viscous import DragEnergy, KelvinVoigtEnergy, green_lagrange
 from gyrify.errors import ConfigError
 from gyrify.mesh import GREY, Mesh
 from gyrify.mesh.ring import elliptic_ring
+from gyrify.mesh.strip import periodic_strip
 from gyrify.physics.growth import growth_stretch, growth_tensor, out_of_plane_growth
 from gyrify.physics.neo_hookean import lame_parameters
 from gyrify.solve.linear import linear_solver
@@ -39,22 +40,14 @@ def build_mesh(config: Config) -> Mesh:
         If the geometry cannot be meshed well.
     """
     geometry, mesh = config.geometry, config.mesh
-    _refuse("geometry.shape", geometry.shape, ("ellipse", "circle"))
     _refuse("mesh.element", mesh.element, ("linear",))
     _refuse("mesh.refine", mesh.refine, (0,))
     _refuse("mesh.refine_cortex", mesh.refine_cortex, (0,))
-    return elliptic_ring(
-        geometry.semi_axes,
-        geometry.hole_fraction,
-        geometry.cortical_thickness,
-        mesh.n_around,
-        mesh.n_layers,
-        mesh.n_cortex_layers,
-        grading=mesh.grading,
-        split=mesh.split,
-        node_jitter=mesh.node_jitter,
-        seed=config.seed,
-    )
+    columns = (geometry.cortical_thickness, mesh.n_around, mesh.n_layers, mesh.n_cortex_layers)
+    style = (mesh.grading, mesh.split, mesh.node_jitter, config.seed)
+    if geometry.shape == "strip":
+        return periodic_strip(geometry.length, geometry.depth, *columns, *style)
+    return elliptic_ring(geometry.semi_axes, geometry.hole_fraction, *columns, *style)
 
 
 def _refuse(field: str, value: object, available: tuple[object, ...]) -> None:
@@ -110,7 +103,7 @@ class Slice:
     @cached_property
     def surface(self) -> ContactSurface:
         """Outer contour, for contact."""
-        return ContactSurface(self.mesh.points, self.mesh.contour, self.mesh.is_closed)
+        return ContactSurface(self.mesh.points, self.mesh.contour, self.mesh.is_closed, self.mesh.period)
 
     @cached_property
     def lumped_area(self) -> FloatArray:
@@ -150,6 +143,14 @@ class Slice:
         """Stiffness of the contact barrier [Pa]."""
         chosen = self.config.contact.barrier_stiffness
         return AUTO_BARRIER * self.config.material.young_modulus if chosen == "auto" else float(chosen)
+
+    def compile(self) -> None:
+        """Compile the kernels, or load them from their cache, so that no increment has to wait for it."""
+        u = np.zeros_like(self.mesh.points)
+        energy = self.elastic_energy(self.kinematics(0.0))
+        energy.evaluate(u, order=2, project_psd=True)
+        energy.max_step(u, u)
+        self.simplices.volume_ratio(u)
 
     def kinematics(self, time: float) -> ElasticKinematics:
         """Cells in their grown state at a growth time."""
@@ -233,6 +234,6 @@ class Slice:
             return []
         rate = number * self.config.material.young_modulus / span
         if kind == "drag":
-            return [DragEnergy(rate / self.config.geometry.mean_radius**2, self.lumped_area, start.u)]
+            return [DragEnergy(rate / self.config.geometry.drag_length**2, self.lumped_area, start.u)]
         strain = green_lagrange(self.kinematics(start_time).deformation(start.u))
         return [KelvinVoigtEnergy(kinematics, rate, self._weight(kinematics), strain, self.pattern)]

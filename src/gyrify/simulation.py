@@ -127,6 +127,7 @@ def resume(run: str | Path, *, observers: Iterable[Observer] = ()) -> History:
 
 
 def _run(problem: Slice, journal: Journal, observers: tuple[Observer, ...]) -> History:
+    problem.compile()
     state = journal.state(len(journal) - 1)
     stepping = problem.stepping
     start, begun = state.position / stepping.end, time.perf_counter()
