@@ -12,6 +12,7 @@ from gyrify.theory import figures as draw
 from gyrify.theory.bilayer import Bilayer
 
 
+@pytest.mark.slow
 def test_pictures_have_units_and_curves() -> None:
     standard = Annulus()
     drawn = [

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq, minimize_scalar
 
-from gyrify.errors import ConfigError, SolveError
+from gyrify.errors import ConfigError
 from gyrify.theory.bilayer import INCOMPRESSIBLE, Bilayer, Loading
 from gyrify.theory.wave import layered_stiffness, lowest_stiffness
 
@@ -30,10 +30,11 @@ __all__ = [
 
 FloatArray = NDArray[np.float64]
 
-# Loads scanned, as parts of the load (g - 1) of the bare surface, which is always critical.
+# Loads scanned, as parts of the load (g - 1) of the bare surface or of the largest one.
 _LOAD_PARTS = np.geomspace(1e-4, 2.0, 28)
-_SURFACE_LOADS = 1.0 + np.geomspace(1e-2, 4.0, 40)
-_SCALED_THICKNESSES = np.geomspace(0.03, 8.0, 28)
+_LARGEST_STRAIN = 1.0
+_SURFACE_LOADS = 1.0 + np.geomspace(1e-2, 4.0, 60)
+_SCALED_THICKNESSES = np.geomspace(0.03, 8.0, 20)
 _TINY = 1e-9
 _EXACT = 1e-13
 _ROUGH = 1e-3
@@ -108,14 +109,16 @@ def neutral_curve(bilayer: Bilayer, scaled_thickness: ArrayLike) -> FloatArray:
     Returns
     -------
     (n,) float array
-        Lowest critical g [-] of each wave; infinite where there is none up to twice the
-        growth strain that makes the bare film's surface unstable.
+        Lowest critical g [-] of each wave; infinite where there is none up to twice the load
+        g - 1 of the bare film's surface, or up to g = 3.
     """
-    return _neutral(bilayer, np.atleast_1d(np.asarray(scaled_thickness, dtype=np.float64)), _EXACT)
+    waves = np.atleast_1d(np.asarray(scaled_thickness, dtype=np.float64))
+    return _neutral(bilayer, waves, critical_surface(bilayer).load, _EXACT)
 
 
-def _neutral(bilayer: Bilayer, waves: FloatArray, tolerance: float) -> FloatArray:
-    loads = 1.0 + _LOAD_PARTS * (critical_surface(bilayer).load - 1.0)
+def _neutral(bilayer: Bilayer, waves: FloatArray, surface: float, tolerance: float) -> FloatArray:
+    """Neutral curve, given the critical load of the film's bare surface."""
+    loads = 1.0 + _LOAD_PARTS * min(surface - 1.0, _LARGEST_STRAIN)
     film, below = bilayer.matrices("film", loads), bilayer.half_space("substrate", loads)
     curve = np.full(len(waves), np.inf)
     for i, kh in enumerate(waves):
@@ -155,17 +158,13 @@ def critical_surface(bilayer: Bilayer) -> Wrinkle:
     Returns
     -------
     Wrinkle
-        With zero wavelength.
-
-    Raises
-    ------
-    SolveError
-        If nothing is critical up to g = 5.
+        With zero wavelength; the load is infinite where nothing is critical up to g = 5, as for tissue of
+        small nu that grows in all directions: it loses volume and is hardly compressed along the layers.
     """
     stiffness = lowest_stiffness(bilayer.half_space("film", _SURFACE_LOADS))
     bracket = _first_sign_change(_SURFACE_LOADS, stiffness)
     if bracket is None:
-        raise SolveError("No load up to g = 5 makes the surface unstable.", "Check the parameters.")
+        return Wrinkle(np.inf, 1.0, 0.0, np.inf)
     load = brentq(
         lambda g: max(float(lowest_stiffness(bilayer.half_space("film", g))[0]), -1.0), *bracket, xtol=1e-13
     )
@@ -185,11 +184,12 @@ def critical_wrinkle(bilayer: Bilayer) -> Wrinkle:
     Returns
     -------
     Wrinkle
-        The surface limit where it comes first or at the same load.
+        The surface limit where it comes first or at the same load; the load is infinite where nothing is
+        critical up to g = 3.
     """
     surface = critical_surface(bilayer)
     # A rough curve finds the valley; then its floor is sought.
-    curve = _neutral(bilayer, _SCALED_THICKNESSES, _ROUGH)
+    curve = _neutral(bilayer, _SCALED_THICKNESSES, surface.load, _ROUGH)
     best = int(np.argmin(curve))
     if curve[best] >= 1.0 + (1.0 + _ROUGH) * (surface.load - 1.0):
         return surface
