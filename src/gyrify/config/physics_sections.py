@@ -73,6 +73,11 @@ class Geometry(Section):
         return math.sqrt(self.area / math.pi)
 
     @property
+    def drag_length(self) -> float:
+        """Length R of the drag number: the mean radius, or the depth of a strip [mm]."""
+        return self.depth if self.shape == "strip" else self.mean_radius
+
+    @property
     def narrowest_wall(self) -> float:
         """Smallest distance from the contour to the clamped boundary [mm]."""
         if self.shape == "strip":

@@ -16,6 +16,7 @@ from functools import cached_property
 import ipctk
 import numpy as np
 
+from gyrify.energy.images import Polyline, share_pairs
 from gyrify.energy.term import Evaluation, FloatArray, Hessian, IntArray, Pattern
 
 # ipctk sums over threads; one thread makes the sum, and so the run, reproducible.
@@ -37,25 +38,40 @@ class ContactSurface:
         Points of the contour in order.
     is_closed : bool
         Whether the last point joins the first.
+    period : float, optional
+        Period in x [mm]: the last point joins the first one period further, and the contour meets its
+        images on both sides.
+
+    Attributes
+    ----------
+    source : (n_vertices,) int array
+        Point of the whole mesh that each vertex of the collision mesh moves with.
+    is_periodic : bool
+        Whether there are images.
     """
 
-    def __init__(self, points: FloatArray, contour: IntArray, is_closed: bool = True) -> None:
-        self.contour = contour
+    def __init__(
+        self, points: FloatArray, contour: IntArray, is_closed: bool = True, period: float | None = None
+    ) -> None:
+        line = Polyline.of(contour.size, is_closed, period)
+        self.contour, self.source = contour, contour[line.vertices]
         self.n_points = points.shape[0]
-        n = contour.size
-        start = np.arange(n if is_closed else n - 1)
-        self.edges = np.asfortranarray(np.stack([start, (start + 1) % n], axis=1).astype(np.int32))
-        self.reference = np.asfortranarray(points[contour])
+        self.is_periodic = period is not None
+        self.edges = np.asfortranarray(line.edges.astype(np.int32))
+        self.reference = np.asfortranarray(points[self.source] + line.offset)
         self.mesh = ipctk.CollisionMesh(self.reference, self.edges)
+        if self.is_periodic:
+            # Images do not meet each other.
+            self.mesh.can_collide = ipctk.make_static_obstacle_filter(contour.size)
 
     def vertices(self, u: FloatArray) -> FloatArray:
-        """(n_contour, 2) deformed vertices [mm] in the Fortran order that ipctk wants."""
-        return np.asfortranarray(self.reference + u[self.contour])
+        """(n_vertices, 2) deformed vertices [mm] in the Fortran order that ipctk wants."""
+        return np.asfortranarray(self.reference + u[self.source])
 
     def collision_free_step(self, u: FloatArray, du: FloatArray) -> float:
         """Fraction of du, at most 1, along which the contour meets itself nowhere."""
         start = self.vertices(u)
-        end = np.asfortranarray(start + du[self.contour])
+        end = np.asfortranarray(start + du[self.source])
         return float(ipctk.compute_collision_free_stepsize(self.mesh, start, end))
 
     def is_path_collision_free(self, u: FloatArray, u_end: FloatArray) -> bool:
@@ -75,8 +91,8 @@ class ContactSurface:
         pairs = np.array(found, dtype=np.int64).reshape(-1, 2)
         ends = self.edges[pairs[:, 1]]
         vertices = np.repeat(pairs[:, :1], 2, axis=1)
-        local = np.unique(np.sort(np.stack([vertices.ravel(), ends.ravel()], axis=1), axis=1), axis=0)
-        return np.asarray(self.contour[local])
+        both = self.source[np.stack([vertices.ravel(), ends.ravel()], axis=1)]
+        return np.asarray(np.unique(np.sort(both, axis=1), axis=0))
 
 
 class ContactEnergy:
@@ -102,6 +118,8 @@ class ContactEnergy:
         collisions.use_area_weighting = True
         collisions.collision_set_type = ipctk.NormalCollisions.IMPROVED_MAX_APPROX
         collisions.build(self.surface.mesh, vertices, self.d_hat)
+        if self.surface.is_periodic:
+            share_pairs(collisions, self.surface.contour.size)
         return collisions
 
     def evaluate(self, u: FloatArray, order: int, project_psd: bool = False) -> Evaluation:
@@ -115,7 +133,8 @@ class ContactEnergy:
         if not np.isfinite(value):
             return Evaluation(np.inf)
         if gradient is not None:
-            gradient[self.surface.contour] = self._barrier.gradient(collisions, mesh, vertices).reshape(-1, 2)
+            forces = self._barrier.gradient(collisions, mesh, vertices).reshape(-1, 2)
+            np.add.at(gradient, self.surface.source, forces)
         hessian = self._hessian(collisions, vertices, project_psd) if order >= 2 else None
         return Evaluation(value, gradient, hessian)
 
@@ -130,15 +149,17 @@ class ContactEnergy:
         method = ipctk.PSDProjectionMethod.CLAMP if project_psd else ipctk.PSDProjectionMethod.NONE
         matrix = self._barrier.hessian(collisions, self.surface.mesh, vertices, method).tocoo()
         upper = matrix.row <= matrix.col
-        rows, cols = self._dofs(matrix.row[upper]), self._dofs(matrix.col[upper])
+        row, col, data = matrix.row[upper], matrix.col[upper], matrix.data[upper]
+        rows, cols = self._dofs(row), self._dofs(col)
         pattern, position = Pattern.of(rows, cols)
         values = np.zeros(pattern.rows.size)
-        np.add.at(values, position, matrix.data[upper])
+        # The two entries of a vertex and its own image meet on the diagonal.
+        np.add.at(values, position, np.where((rows == cols) & (row != col), 2.0 * data, data))
         return Hessian(pattern, values)
 
     def _dofs(self, local: IntArray) -> IntArray:
-        """Global degrees of freedom of contour-local ones (vertex-major, two each)."""
-        return self.surface.contour[local // 2] * 2 + local % 2
+        """Degrees of freedom of the mesh of those of the collision mesh (vertex-major, two each)."""
+        return self.surface.source[local // 2] * 2 + local % 2
 
     @cached_property
     def _no_hessian(self) -> Hessian:

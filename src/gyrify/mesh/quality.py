@@ -10,6 +10,10 @@ from gyrify.errors import MeshError
 from gyrify.mesh.mesh import FloatArray, Mesh
 
 LOWEST_QUALITY: Final = 0.02
+THIN_LAYERS: Final = (
+    "Thin layers need more points around: raise mesh.n_around, lower mesh.n_layers or "
+    "mesh.n_cortex_layers, or change geometry.cortical_thickness."
+)
 
 
 def triangle_quality(corners: FloatArray) -> FloatArray:
@@ -29,8 +33,8 @@ def triangle_quality(corners: FloatArray) -> FloatArray:
     return np.asarray(2.0 * np.sqrt(3.0) * double_area / np.square(edges).sum(axis=(1, 2)))
 
 
-def require_quality(mesh: Mesh, lowest: float = LOWEST_QUALITY) -> None:
-    """Refuse a mesh with inverted cells or slivers.
+def require_quality(mesh: Mesh, lowest: float = LOWEST_QUALITY, advice: str = THIN_LAYERS) -> None:
+    """Refuse a mesh with inverted cells or slivers; ``advice`` says what to change.
 
     Raises
     ------
@@ -41,6 +45,5 @@ def require_quality(mesh: Mesh, lowest: float = LOWEST_QUALITY) -> None:
     if worst < lowest:
         raise MeshError(
             f"The mesh has cells of quality {worst:.3g} (1 is equilateral; at least {lowest:g} is needed).",
-            "Thin layers need more points around: raise mesh.n_around, lower mesh.n_layers or "
-            "mesh.n_cortex_layers, or change geometry.cortical_thickness.",
+            advice,
         )
