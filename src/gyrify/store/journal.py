@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import sqlite3
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import suppress
 from dataclasses import astuple
 from pathlib import Path
 from typing import Any, Final
@@ -21,7 +20,9 @@ import numpy as np
 from gyrify.errors import HistoryError
 from gyrify.solve.quasistatic import State
 from gyrify.solve.result import Stats
+from gyrify.solve.stability import Onset
 from gyrify.solve.types import FloatArray
+from gyrify.store.database import RERUN, connect, transaction, translated
 
 FORMAT: Final = 1
 _APPLICATION_ID: Final = 0x67797269  # "gyri"
@@ -42,6 +43,18 @@ CREATE TABLE increments (
     couplings BLOB NOT NULL,
     digest BLOB NOT NULL
 );
+CREATE TABLE stability (number INTEGER PRIMARY KEY, n_negative INTEGER NOT NULL);
+CREATE TABLE onset (
+    number INTEGER PRIMARY KEY CHECK (number = 0),
+    growth_time REAL NOT NULL,
+    bracket_low REAL NOT NULL,
+    bracket_high REAL NOT NULL,
+    eigenvalue REAL NOT NULL,
+    mode_number INTEGER NOT NULL,
+    wavelength REAL NOT NULL,
+    displacement BLOB NOT NULL,
+    vector BLOB NOT NULL
+);
 """
 
 
@@ -52,13 +65,14 @@ class Journal:
     ----------
     connection : sqlite3.Connection
         Open database of the right format; use `create` or `open`.
-    name : str
-        What to call it in messages.
+    path : Path or None
+        Its file; None where it is in memory.
     """
 
-    def __init__(self, connection: sqlite3.Connection, name: str) -> None:
+    def __init__(self, connection: sqlite3.Connection, path: Path | None) -> None:
         self._connection = connection
-        self.name = name
+        self.path = path
+        self.name = "in memory" if path is None else str(path)
 
     @staticmethod
     def create(path: Path | None, meta: dict[str, str]) -> Journal:
@@ -69,18 +83,23 @@ class Journal:
         HistoryError
             If the file cannot be written.
         """
-        name = "in memory" if path is None else str(path)
-        with _translated(name):
-            connection = sqlite3.connect(":memory:" if path is None else path, isolation_level=None)
-            connection.execute("PRAGMA journal_mode = WAL")
-            connection.execute("PRAGMA synchronous = NORMAL")
-            with _transaction(connection):
-                for statement in filter(str.strip, _SCHEMA.split(";")):
-                    connection.execute(statement)
-                connection.executemany("INSERT INTO meta VALUES (?, ?)", meta.items())
-                connection.execute(f"PRAGMA application_id = {_APPLICATION_ID}")
-                connection.execute(f"PRAGMA user_version = {FORMAT}")
-        return Journal(connection, name)
+        try:
+            with translated("in memory" if path is None else str(path)):
+                connection = sqlite3.connect(":memory:" if path is None else path, isolation_level=None)
+                connection.execute("PRAGMA journal_mode = WAL")
+                connection.execute("PRAGMA synchronous = NORMAL")
+                with transaction(connection):
+                    for statement in filter(str.strip, _SCHEMA.split(";")):
+                        connection.execute(statement)
+                    connection.executemany("INSERT INTO meta VALUES (?, ?)", _sealed(meta).items())
+                    connection.execute(f"PRAGMA application_id = {_APPLICATION_ID}")
+                    connection.execute(f"PRAGMA user_version = {FORMAT}")
+        except HistoryError:
+            if path is not None:  # half a journal is no run: nothing was accepted yet
+                for suffix in ("", "-wal", "-shm"):
+                    Path(f"{path}{suffix}").unlink(missing_ok=True)
+            raise
+        return Journal(connection, path)
 
     @staticmethod
     def open(path: Path, *, read_only: bool = False) -> Journal:
@@ -95,10 +114,12 @@ class Journal:
             raise HistoryError(
                 f"There is no journal at {path}.", "Name a folder that `gyrify run` has written."
             )
-        with _translated(str(path)):
-            connection = sqlite3.connect(path.resolve().as_uri() + "?mode=rw", uri=True, isolation_level=None)
-            if read_only:
-                connection.execute("PRAGMA query_only = ON")
+        if path.stat().st_size == 0:
+            raise HistoryError(
+                f"The journal {path} is empty: the run ended before its first state was stored.", RERUN
+            )
+        with translated(str(path)):
+            connection = connect(path, read_only)
             (application,) = connection.execute("PRAGMA application_id").fetchone()
             (version,) = connection.execute("PRAGMA user_version").fetchone()
         if application != _APPLICATION_ID:
@@ -110,27 +131,51 @@ class Journal:
                 f"{path} has journal format {version}; this version of gyrify reads format {FORMAT}.",
                 "Use the version of gyrify that wrote it (see `versions` in summary.json), or run again.",
             )
-        if not read_only:
-            connection.execute("PRAGMA synchronous = NORMAL")
-        return Journal(connection, str(path))
+        journal = Journal(connection, path)
+        journal.check()
+        return journal
 
     def close(self) -> None:
         """Close the database; its write-ahead log is folded in."""
         self._connection.close()
 
+    def settle(self) -> None:
+        """Fold the write-ahead log into the one file, where nobody else is reading and the disk has room."""
+        with suppress(sqlite3.Error):
+            self._connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+
+    def check(self) -> None:
+        """Recompute every checksum.
+
+        Raises
+        ------
+        HistoryError
+            If anything that a run wrote is not what it wrote, or an increment is missing.
+        """
+        with translated(self.name):
+            meta = dict(
+                self._connection.execute("SELECT key, value FROM meta WHERE key IN ('config', 'seal')")
+            )
+        if "seal" in meta and _sealed({"config": meta.get("config", "")})["seal"] != meta["seal"]:
+            raise HistoryError(f"The configuration in {self.name} is damaged: its checksum differs.", RERUN)
+        for number in range(len(self)):
+            self._row(number)
+
     def meta(self, key: str, default: str = "") -> str:
         """A recorded fact, such as the configuration or the status."""
-        with _translated(self.name):
+        with translated(self.name):
             row = self._connection.execute("SELECT value FROM meta WHERE key = ?", (key,)).fetchone()
         return default if row is None else str(row[0])
 
     def set_meta(self, **values: str) -> None:
         """Record facts in one transaction."""
-        with _translated(self.name), _transaction(self._connection):
-            self._connection.executemany("INSERT OR REPLACE INTO meta VALUES (?, ?)", values.items())
+        with translated(self.name), transaction(self._connection):
+            self._connection.executemany("INSERT OR REPLACE INTO meta VALUES (?, ?)", _sealed(values).items())
 
-    def append(self, state: State, wall_s: float) -> None:
-        """Record an accepted increment in one transaction."""
+    def append(
+        self, state: State, wall_s: float, n_negative: int | None = None, onset: Onset | None = None
+    ) -> None:
+        """Record an accepted increment, and what was found of its stability, in one transaction."""
         u = np.ascontiguousarray(state.u, dtype="<f8").tobytes()
         couplings = np.ascontiguousarray(state.couplings, dtype="<i4").tobytes()
         numbers = (
@@ -142,16 +187,40 @@ class Journal:
             *astuple(state.stats),
         )
         row = (*numbers, wall_s, u, couplings, _digest(numbers, u, couplings))
-        with _translated(self.name), _transaction(self._connection):
+        with translated(self.name), transaction(self._connection):
             self._connection.execute(f"INSERT INTO increments VALUES ({','.join('?' * len(row))})", row)
+            if n_negative is not None:
+                self._connection.execute("INSERT INTO stability VALUES (?, ?)", (state.index, n_negative))
+            if onset is not None:
+                self._connection.execute(_INSERT_ONSET, _onset_row(onset))
+
+    def set_onset(self, onset: Onset) -> None:
+        """Record the onset in a transaction of its own, where its increment is not accepted."""
+        with _translated(self.name), _transaction(self._connection):
+            self._connection.execute(_INSERT_ONSET, _onset_row(onset))
+
+    @property
+    def onset(self) -> Onset | None:
+        """Where the path first lost stability, if it is known to have."""
+        with _translated(self.name):
+            row = self._connection.execute("SELECT * FROM onset").fetchone()
+        if row is None:
+            return None
+        return Onset(row[1], (row[2], row[3]), *row[4:7], _displacement(row[7]), _displacement(row[8]))
+
+    @property
+    def negative_pivots(self) -> dict[int, int]:
+        """Number of negative pivots of the tissue's stiffness, by the increments that were looked at."""
+        with _translated(self.name):
+            return dict(self._connection.execute("SELECT number, n_negative FROM stability ORDER BY number"))
 
     def __len__(self) -> int:
-        with _translated(self.name):
+        with translated(self.name):
             return int(self._connection.execute("SELECT count(*) FROM increments").fetchone()[0])
 
     def column(self, name: str) -> list[Any]:
         """One number of every increment, in order."""
-        with _translated(self.name):
+        with translated(self.name):
             return [
                 row[0] for row in self._connection.execute(f"SELECT {name} FROM increments ORDER BY number")
             ]
@@ -181,14 +250,14 @@ class Journal:
         """SHA-256 (hexadecimal) of growth times and displacements of all increments, in order."""
         digest = hashlib.sha256()
         query = "SELECT position, displacement FROM increments ORDER BY number"
-        with _translated(self.name):
+        with translated(self.name):
             for position, displacement in self._connection.execute(query):
                 digest.update(int(position).to_bytes(8, "little"))
                 digest.update(displacement)
         return digest.hexdigest()
 
     def _row(self, number: int) -> tuple[Any, ...]:
-        with _translated(self.name):
+        with translated(self.name):
             query = "SELECT * FROM increments WHERE number = ?"
             row: tuple[Any, ...] | None = self._connection.execute(query, (number,)).fetchone()
         if row is None:
@@ -196,11 +265,15 @@ class Journal:
                 f"The journal {self.name} has no increment {number}.", f"It holds {len(self)}."
             )
         if _digest(row[:9], row[10], row[11]) != row[12]:
-            raise HistoryError(f"Increment {number} in {self.name} is damaged: its checksum differs.", _RERUN)
+            raise HistoryError(f"Increment {number} in {self.name} is damaged: its checksum differs.", RERUN)
         return row
 
 
-_RERUN: Final = "Restore the file from a copy, or run again with --overwrite."
+def _sealed(meta: dict[str, str]) -> dict[str, str]:
+    """Facts with a checksum of the configuration, where it is one of them."""
+    if "config" not in meta:
+        return meta
+    return {**meta, "seal": hashlib.blake2b(meta["config"].encode(), digest_size=16).hexdigest()}
 
 
 def _digest(numbers: tuple[Any, ...], u: bytes, couplings: bytes) -> bytes:
@@ -209,32 +282,3 @@ def _digest(numbers: tuple[Any, ...], u: bytes, couplings: bytes) -> bytes:
 
 def _displacement(blob: bytes) -> FloatArray:
     return np.frombuffer(blob, dtype="<f8").astype(np.float64).reshape(-1, 2)
-
-
-@contextmanager
-def _transaction(connection: sqlite3.Connection) -> Iterator[None]:
-    connection.execute("BEGIN IMMEDIATE")
-    try:
-        yield
-    except BaseException:
-        connection.execute("ROLLBACK")
-        raise
-    connection.execute("COMMIT")
-
-
-@contextmanager
-def _translated(name: str) -> Iterator[None]:
-    """Turn database faults into one sentence with advice."""
-    try:
-        yield
-    except sqlite3.DatabaseError as error:
-        text = str(error)
-        if "full" in text:
-            advice = "Free space on the disk, then continue with `gyrify resume`."
-        elif "readonly" in text or "unable to open" in text:
-            advice = "Choose a folder that you may write to."
-        elif "locked" in text:
-            advice = "Another process is using this run; wait for it, or stop it."
-        else:
-            advice = _RERUN
-        raise HistoryError(f"The journal {name} could not be used: {text}.", advice) from error
