@@ -139,6 +139,12 @@ class Slice:
         return Stepping(solver.increments, solver.min_increment, criterion)
 
     @property
+    def is_conservative(self) -> bool:
+        """Whether nothing dissipates, so that an accepted state is an equilibrium of the tissue itself."""
+        dissipation = self.config.dissipation
+        return dissipation.kind == "none" or dissipation.number == 0.0
+
+    @property
     def barrier_stiffness(self) -> float:
         """Stiffness of the contact barrier [Pa]."""
         chosen = self.config.contact.barrier_stiffness
@@ -229,9 +235,9 @@ class Slice:
         self, kinematics: ElasticKinematics, start: State, start_time: float, span: float
     ) -> list[EnergyTerm]:
         """Energy of the increment's dissipation; ``span`` is a fraction of the duration."""
-        kind, number = self.config.dissipation.kind, self.config.dissipation.number
-        if kind == "none" or number == 0.0:
+        if self.is_conservative:
             return []
+        kind, number = self.config.dissipation.kind, self.config.dissipation.number
         rate = number * self.config.material.young_modulus / span
         if kind == "drag":
             return [DragEnergy(rate / self.config.geometry.drag_length**2, self.lumped_area, start.u)]

@@ -112,7 +112,11 @@ class Stepping:
 
 
 def grow(
-    problem: Problem, stepping: Stepping, state: State, watch: Callable[[], None] = lambda: None
+    problem: Problem,
+    stepping: Stepping,
+    state: State,
+    watch: Callable[[], None] = lambda: None,
+    inspect: Callable[[State, State], State] = lambda _, accepted: accepted,
 ) -> Iterator[State]:
     """Accepted states after ``state``, up to the end of growth.
 
@@ -126,6 +130,8 @@ def grow(
         Where to start: the reference state, or a stored one.
     watch : callable
         Called at each Newton iteration; may raise to stop.
+    inspect : callable
+        Called with the last and the new state of each increment; gives the state to go on from.
 
     Yields
     ------
@@ -138,7 +144,7 @@ def grow(
     """
     system = problem.system(state.couplings)
     while state.position < stepping.end:
-        state = _advance(problem, stepping, state, system, watch)
+        state = inspect(state, _advance(problem, stepping, state, system, watch))
         yield state
 
 

@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,8 +16,14 @@ from gyrify.mesh import Mesh
 from gyrify.model import Slice
 from gyrify.solve.quasistatic import TICKS
 from gyrify.solve.result import Stats
+from gyrify.solve.stability import Onset
 from gyrify.solve.types import FloatArray
 from gyrify.store.journal import Journal
+from gyrify.store.lock import has_owner
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+    from pyvista import UnstructuredGrid
 
 
 class History:
@@ -98,17 +105,27 @@ class History:
     @property
     def status(self) -> str:
         """``completed``, ``failed``, ``stopped``, ``interrupted`` or ``running``."""
-        return self.journal.meta("status", "running")
+        return "interrupted" if self._is_abandoned else self.journal.meta("status", "running")
 
     @property
     def reason(self) -> str:
         """Why the run ended early; empty when it completed."""
-        return self.journal.meta("reason")
+        return "Its process ended without a word." if self._is_abandoned else self.journal.meta("reason")
 
     @property
     def advice(self) -> str:
         """What to try after an early end."""
-        return self.journal.meta("advice")
+        return "Continue with `gyrify resume`." if self._is_abandoned else self.journal.meta("advice")
+
+    @property
+    def _is_abandoned(self) -> bool:
+        """Whether a run is recorded as going on that no process works on: it was killed."""
+        path = self.journal.path
+        return (
+            path is not None
+            and self.journal.meta("status", "running") == "running"
+            and not has_owner(path.parent)
+        )
 
     @property
     def result_hash(self) -> str:
@@ -145,6 +162,37 @@ class History:
         """Whether the last state is a stable equilibrium of the tissue alone; None while unknown."""
         known = self.journal.meta("stable")
         return known == "true" if known else None
+
+    @property
+    def onset(self) -> Onset | None:
+        """Where the path first lost stability; None where it did not, or was not looked at.
+
+        With dissipation this is where the tissue's own stiffness, on the path that lags behind, ceases to be
+        positive definite. With node jitter the bifurcation is unfolded, so that onset comes late or never.
+        """
+        return self.journal.onset
+
+    @property
+    def negative_pivots(self) -> dict[int, int]:
+        """Negative pivots of the tissue's stiffness, by the states that were looked at."""
+        return self.journal.negative_pivots
+
+    def to_dataframe(self) -> DataFrame:
+        """Metrics of every state as a pandas table, one row per state; see `gyrify.notebook`."""
+        from gyrify.notebook import to_dataframe
+
+        return to_dataframe(self)
+
+    def to_pyvista(self, index: int = -1) -> UnstructuredGrid:
+        """A state as a PyVista grid with all its fields; see `gyrify.notebook`."""
+        from gyrify.notebook import to_pyvista
+
+        return to_pyvista(self, index)
+
+    def _repr_html_(self) -> str:
+        from gyrify.notebook import html
+
+        return html(self)
 
     def __repr__(self) -> str:
         return f"History({len(self)} states, {self.fractions[-1]:.0%} grown, {self.status})"

@@ -22,6 +22,7 @@ from gyrify.solve.quasistatic import State
 from gyrify.solve.result import Stats
 from gyrify.solve.stability import Onset
 from gyrify.solve.types import FloatArray
+from gyrify.store import onset_rows
 from gyrify.store.database import RERUN, connect, transaction, translated
 
 FORMAT: Final = 1
@@ -42,18 +43,6 @@ CREATE TABLE increments (
     displacement BLOB NOT NULL,
     couplings BLOB NOT NULL,
     digest BLOB NOT NULL
-);
-CREATE TABLE stability (number INTEGER PRIMARY KEY, n_negative INTEGER NOT NULL);
-CREATE TABLE onset (
-    number INTEGER PRIMARY KEY CHECK (number = 0),
-    growth_time REAL NOT NULL,
-    bracket_low REAL NOT NULL,
-    bracket_high REAL NOT NULL,
-    eigenvalue REAL NOT NULL,
-    mode_number INTEGER NOT NULL,
-    wavelength REAL NOT NULL,
-    displacement BLOB NOT NULL,
-    vector BLOB NOT NULL
 );
 """
 
@@ -89,7 +78,7 @@ class Journal:
                 connection.execute("PRAGMA journal_mode = WAL")
                 connection.execute("PRAGMA synchronous = NORMAL")
                 with transaction(connection):
-                    for statement in filter(str.strip, _SCHEMA.split(";")):
+                    for statement in filter(str.strip, (_SCHEMA + onset_rows.SCHEMA).split(";")):
                         connection.execute(statement)
                     connection.executemany("INSERT INTO meta VALUES (?, ?)", _sealed(meta).items())
                     connection.execute(f"PRAGMA application_id = {_APPLICATION_ID}")
@@ -192,26 +181,24 @@ class Journal:
             if n_negative is not None:
                 self._connection.execute("INSERT INTO stability VALUES (?, ?)", (state.index, n_negative))
             if onset is not None:
-                self._connection.execute(_INSERT_ONSET, _onset_row(onset))
+                self._connection.execute(onset_rows.INSERT, onset_rows.to_row(onset))
 
     def set_onset(self, onset: Onset) -> None:
         """Record the onset in a transaction of its own, where its increment is not accepted."""
-        with _translated(self.name), _transaction(self._connection):
-            self._connection.execute(_INSERT_ONSET, _onset_row(onset))
+        with translated(self.name), transaction(self._connection):
+            self._connection.execute(onset_rows.INSERT, onset_rows.to_row(onset))
 
     @property
     def onset(self) -> Onset | None:
         """Where the path first lost stability, if it is known to have."""
-        with _translated(self.name):
+        with translated(self.name):
             row = self._connection.execute("SELECT * FROM onset").fetchone()
-        if row is None:
-            return None
-        return Onset(row[1], (row[2], row[3]), *row[4:7], _displacement(row[7]), _displacement(row[8]))
+        return None if row is None else onset_rows.from_row(row)
 
     @property
     def negative_pivots(self) -> dict[int, int]:
         """Number of negative pivots of the tissue's stiffness, by the increments that were looked at."""
-        with _translated(self.name):
+        with translated(self.name):
             return dict(self._connection.execute("SELECT number, n_negative FROM stability ORDER BY number"))
 
     def __len__(self) -> int:

@@ -1,0 +1,198 @@
+"""Loss of stability in a run: looked for at accepted increments, located, and where asked for, followed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from scipy.optimize import brentq
+
+from gyrify.errors import SolveError
+from gyrify.mesh.waves import dominant_wave, normal_displacement
+from gyrify.model import Slice
+from gyrify.solve.branch import settle
+from gyrify.solve.equilibrium import find_equilibrium
+from gyrify.solve.quasistatic import State, Stepping
+from gyrify.solve.result import Result
+from gyrify.solve.stability import Eigenpair, Onset, Tangent
+from gyrify.solve.system import System
+from gyrify.solve.types import FloatArray
+
+# After onset every so many increments are looked at, and the last.
+EVERY = 10
+# Tolerance of the onset, as a fraction of its increment; first step along a mode over the cortical thickness.
+_ONSET_TOLERANCE = 1e-3
+_DEPARTURE = 0.2
+
+
+@dataclass
+class Detector:
+    """Looks at accepted increments; an add-on that leaves a run with dissipation as it is.
+
+    Without dissipation an accepted state is an equilibrium of the tissue itself. An unstable one is left for
+    a stable one (`stability.follow_branch`), or the run ends there with the evidence.
+
+    Attributes
+    ----------
+    problem : Slice
+        The tissue.
+    stepping : Stepping
+        How growth is divided.
+    found : bool
+        Whether the onset is known already.
+    watch : callable
+        Called at each Newton iteration; may raise to stop.
+    n_negative : int or None
+        Negative pivots at the last increment, before it was left; None where it was not looked at.
+    onset : Onset or None
+        The onset, if it lies in the last increment.
+    """
+
+    problem: Slice
+    stepping: Stepping
+    found: bool
+    watch: Callable[[], None] = lambda: None
+    n_negative: int | None = None
+    onset: Onset | None = None
+    _system: System | None = field(default=None, repr=False)
+
+    def inspect(self, before: State, after: State) -> State:
+        """Look at an increment; the state to go on from.
+
+        Raises
+        ------
+        SolveError
+            If the state is an unstable equilibrium that is not followed, or cannot be.
+        """
+        self.n_negative = self.onset = None
+        conservative, end = self.problem.is_conservative, after.position == self.stepping.end
+        if not (conservative or end or not self.found or after.index % EVERY == 0):
+            return after
+        if self._system is None:
+            self._system = self.problem.system(after.couplings)
+        try:
+            self.n_negative = self._tangent(after, before, self._system).n_negative
+            if self.n_negative > 0 and not self.found:
+                self.onset = locate_onset(self.problem, self.stepping, before, after, self.watch)
+                self.found = True
+        except SolveError:
+            if conservative:
+                raise
+        if conservative and self.n_negative:
+            return self._leave(before, after)
+        return after
+
+    def _tangent(self, state: State, before: State, system: System) -> Tangent:
+        return self.problem.tangent(state.position / self.stepping.end, state.u, before.u, system)
+
+    def _leave(self, before: State, after: State) -> State:
+        """Stable state that an unstable equilibrium leads to."""
+        problem, system = self.problem, self.problem.system(after.couplings)
+        stability = problem.config.stability
+        if not stability.follow_branch:
+            eigenvalue = self._tangent(after, before, system).lowest().eigenvalue
+            raise self._unstable(after, eigenvalue)
+        settled = settle(
+            problem.tissue_energy(after.position / self.stepping.end, before.u),
+            after.u,
+            system,
+            problem.free_mass,
+            self.stepping.criterion,
+            problem.candidates,
+            lambda u, mode: stability.sign * outwards(problem, u, mode),
+            _DEPARTURE * problem.config.geometry.cortical_thickness,
+            self.watch,
+        )
+        return replace(after, u=settled.u, residual=settled.residual, stats=after.stats + settled.stats)
+
+    def _unstable(self, state: State, eigenvalue: float) -> SolveError:
+        time = state.position / self.stepping.end * self.problem.config.growth.duration
+        text = (
+            f"Buckling instability: the equilibrium at growth time {time:.6g} is unstable, with "
+            f"{self.n_negative} negative pivots in the stiffness and a lowest eigenvalue of "
+            f"{eigenvalue:.4g} Pa/mm^2"
+        )
+        if self.onset is not None:
+            onset = self.onset
+            text += f"; stability is lost at growth time {onset.growth_time:.6g} in mode {onset.mode_number}"
+        return SolveError(
+            f"{text}.",
+            "Set stability.follow_branch = true to fold, or choose a dissipation.kind; "
+            "stability.detect = false stays on the unstable branch.",
+        )
+
+
+def locate_onset(
+    problem: Slice,
+    stepping: Stepping,
+    before: State,
+    after: State,
+    watch: Callable[[], None] = lambda: None,
+) -> Onset:
+    """Find where the lowest eigenvalue of elasticity and contact vanishes inside an increment.
+
+    Parameters
+    ----------
+    problem : Slice
+        The tissue.
+    stepping : Stepping
+        How growth is divided.
+    before, after : State
+        The last stable and the first unstable accepted state. Between them the same incremental problem is
+        solved with parts of the span.
+    watch : callable
+        Called at each Newton iteration; may raise to stop.
+
+    Returns
+    -------
+    Onset
+        At the end of the increment if a partial increment cannot be solved.
+    """
+    system = problem.system(after.couplings)
+    start, end = (state.position / stepping.end for state in (before, after))
+    known: dict[float, tuple[FloatArray, Eigenpair]] = {}
+
+    def eigenvalue(share: float) -> float:
+        fraction = start + share * (end - start)
+        u = before.u + share * (after.u - before.u)
+        if 0.0 < share < 1.0:
+            total = problem.energy(fraction, before, start)
+            solution = find_equilibrium(total, u, system, stepping.criterion, problem.candidates, watch)
+            if solution.result is not Result.CONVERGED:
+                raise SolveError(solution.result.message)
+            u = solution.u
+        pair = problem.tangent(fraction, u, before.u, system).lowest()
+        known[share] = u, pair
+        return pair.eigenvalue
+
+    try:
+        root = float(brentq(eigenvalue, 0.0, 1.0, xtol=_ONSET_TOLERANCE))
+    except (SolveError, ValueError):
+        root = 1.0
+        eigenvalue(root)
+    if root not in known:
+        eigenvalue(root)
+    duration = problem.config.growth.duration
+    times = {share: (start + share * (end - start)) * duration for share in known}
+    stable = [times[share] for share, (_, pair) in known.items() if pair.eigenvalue > 0.0]
+    unstable = [times[share] for share, (_, pair) in known.items() if pair.eigenvalue <= 0.0]
+    bracket = max(stable, default=start * duration), min(unstable, default=end * duration)
+    return make_onset(problem, times[root], bracket, *known[root])
+
+
+def make_onset(
+    problem: Slice, growth_time: float, bracket: tuple[float, float], u: FloatArray, pair: Eigenpair
+) -> Onset:
+    """Onset of a state and its lowest eigenpair, with the wave that the mode is."""
+    mode_number, wavelength = dominant_wave(problem.mesh, u, pair.vector)
+    mode = outwards(problem, u, pair.vector)
+    return Onset(growth_time, bracket, pair.eigenvalue, mode_number, wavelength, u, mode)
+
+
+def outwards(problem: Slice, u: FloatArray, mode: FloatArray) -> FloatArray:
+    """A mode with the sign by which its largest displacement normal to the contour points outwards."""
+    normal = normal_displacement(problem.mesh, u, mode)
+    # Among peaks that are equal but for rounding, the first one decides.
+    peak = int(np.argmax(np.abs(normal) > (1.0 - 1e-6) * np.abs(normal).max()))
+    return mode if normal[peak] >= 0.0 else -mode
