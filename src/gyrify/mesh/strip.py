@@ -111,7 +111,7 @@ def _points(
 
 
 def _advice(column: float, layers: FloatArray) -> str:
-    """What to change where columns [mm] are too wide for the thinnest layer, or too narrow for the thickest."""
+    """What to change where columns are too wide for the thinnest layer or too narrow for the thickest."""
     if column / layers.min() >= layers.max() / column:
         return (
             f"Columns {column:.3g} mm wide are too wide for layers of {layers.min():.3g} mm: raise "
