@@ -5,13 +5,18 @@ from __future__ import annotations
 import json
 import os
 import socket
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Final
 
 from filelock import FileLock, Timeout
 
 from gyrify.errors import HistoryError
+from gyrify.store.faults import storage_faults
+
+OWNER: Final = "run.owner.json"
 
 
 @contextmanager
@@ -28,26 +33,55 @@ def run_lock(folder: Path) -> Iterator[str]:
     HistoryError
         If another process holds the folder, or the folder cannot be written.
     """
-    owner = folder / "run.owner.json"
+    owner = folder / OWNER
     lock = FileLock(folder / "run.lock")
     try:
-        lock.acquire(timeout=0)
+        with storage_faults(folder):
+            lock.acquire(timeout=0)
     except Timeout as held:
         raise HistoryError(
             f"The run folder {folder} is in use by {_describe(owner)}.",
             "Wait for that process, stop it, or choose another folder with --out.",
         ) from held
-    except OSError as error:
-        raise HistoryError(
-            f"The run folder {folder} cannot be written: {error.strerror}.", "Choose another with --out."
-        ) from error
     try:
-        stale = f"{_describe(owner)} ended without closing this run." if owner.exists() else ""
-        owner.write_text(json.dumps({"pid": os.getpid(), "host": socket.gethostname()}), encoding="utf-8")
+        stale = (
+            f"{_describe(owner)} ended without closing this run; it is taken over." if owner.exists() else ""
+        )
+        with storage_faults(folder):
+            owner.write_text(json.dumps({"pid": os.getpid(), "host": socket.gethostname()}), encoding="utf-8")
         yield stale[:1].upper() + stale[1:]
-        owner.unlink(missing_ok=True)
     finally:
+        owner.unlink(missing_ok=True)
         lock.release()
+
+
+def has_owner(folder: Path) -> bool:
+    """Whether a process holds the folder, as far as can be told without disturbing it.
+
+    Parameters
+    ----------
+    folder : Path
+        Run folder.
+
+    Returns
+    -------
+    bool
+        False once the process that claimed the folder is known to have ended.
+    """
+    try:
+        fields = json.loads((folder / OWNER).read_text(encoding="utf-8"))
+        pid, host = int(fields["pid"]), fields["host"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+    if host != socket.gethostname() or sys.platform == "win32":
+        return True
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):
+        return True
+    return True
 
 
 def _describe(owner: Path) -> str:

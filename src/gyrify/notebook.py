@@ -1,0 +1,144 @@
+"""How a run shows itself in a notebook, and what it becomes for pandas and PyVista, if these are there."""
+
+from __future__ import annotations
+
+import base64
+import io
+from html import escape
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gyrify.errors import GyrifyError
+from gyrify.outputs import folded_picture
+from gyrify.store.fields import POINT_FIELDS, fields
+from gyrify.store.history import History
+from gyrify.summary import metrics_rows, summarise
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+    from pyvista import UnstructuredGrid
+
+_DPI = 110
+
+
+def html(history: History) -> str:
+    """Picture of the last state and table of what the run came to, as one piece of HTML.
+
+    Parameters
+    ----------
+    history : History
+        The run, complete or not.
+
+    Returns
+    -------
+    str
+        HTML without scripts or links; everything in it is escaped.
+    """
+    summary = summarise(history)
+    stream = io.BytesIO()
+    folded_picture(history, summary).savefig(stream, format="png", dpi=_DPI)
+    picture = base64.b64encode(stream.getvalue()).decode("ascii")
+    rows = "".join(
+        f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in _lines(summary)
+    )
+    return (
+        '<div style="display: flex; flex-wrap: wrap; align-items: center; gap: 1em">'
+        f'<img alt="The slice at the end of the run" src="data:image/png;base64,{picture}">'
+        f"<table><caption>{escape(repr(history))}</caption>{rows}</table></div>"
+    )
+
+
+def to_dataframe(history: History) -> DataFrame:
+    """Metrics of every state as a pandas table.
+
+    Parameters
+    ----------
+    history : History
+        The run, complete or not.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The columns of ``metrics.csv``; the number of the increment is the index.
+
+    Raises
+    ------
+    GyrifyError
+        If pandas is not installed.
+    """
+    return _library("pandas").DataFrame(metrics_rows(history)).set_index("increment")
+
+
+def to_pyvista(history: History, index: int = -1) -> UnstructuredGrid:
+    """Return a state as a PyVista grid, deformed, with all its fields.
+
+    Parameters
+    ----------
+    history : History
+        The run.
+    index : int
+        State; negative indices count from the end.
+
+    Returns
+    -------
+    pyvista.UnstructuredGrid
+        Points [mm] with z = 0 and triangles; vectors and tensors have three dimensions.
+
+    Raises
+    ------
+    GyrifyError
+        If PyVista is not installed.
+    HistoryError
+        If there is no such state.
+    """
+    pyvista = _library("pyvista")
+    x = history.points(index)
+    grid = pyvista.UnstructuredGrid({pyvista.CellType.TRIANGLE: history.mesh.cells}, _in_space(x))
+    for name, values in fields(history, index).items():
+        data = grid.point_data if name in POINT_FIELDS else grid.cell_data
+        data[name] = _in_space(values) if values.ndim == 2 else values.reshape(len(values), -1).squeeze()
+    return grid
+
+
+def _in_space(vectors: Any) -> Any:
+    return np.column_stack([vectors, np.zeros(len(vectors))])
+
+
+def _library(name: str) -> Any:
+    try:
+        return import_module(name)
+    except ImportError as error:
+        raise GyrifyError(
+            f"This needs {name}, which is not installed.", f"Install it with: pip install {name}"
+        ) from error
+
+
+def _lines(summary: dict[str, Any]) -> list[tuple[str, str]]:
+    """What a summary says, for people: name with unit, and value."""
+    gi, depth, thickness, solver = (
+        summary[key] for key in ("gi", "sulcal_depth_mm", "thickness_mm", "solver")
+    )
+    lines = [
+        ("status", " ".join(filter(None, (summary["status"], summary["reason"], summary["advice"])))),
+        (f"GI, closing of {gi['closing_radius_mm']:g} mm", _number(gi["closing"])),
+        ("GI, hull", _number(gi["hull"])),
+        ("GI, exposed", _number(gi["exposed"])),
+        ("gyri", str(summary["n_gyri"])),
+        ("sulcal depth, deepest [mm]", _number(depth["max"])),
+        ("sulcal depth, mean [mm]", _number(depth["mean"])),
+        ("thickness at crowns [mm]", _number(thickness["crown"])),
+        ("thickness at fundi [mm]", _number(thickness["fundus"])),
+        ("contour [mm]", _number(summary["contour_length_mm"])),
+        ("growth time", _number(summary["growth_time"])),
+        ("increments", str(solver["increments"])),
+        ("time [s]", _number(solver["wall_s"])),
+        ("configuration", summary["config_hash"][:12]),
+        ("result", summary["result_hash"][:12]),
+    ]
+    return lines
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.4g}"

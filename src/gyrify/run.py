@@ -1,0 +1,146 @@
+"""A run that this process holds: grows, stores every accepted increment, tells observers, records its end."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from dataclasses import dataclass
+
+from gyrify.detection import Detector
+from gyrify.errors import GyrifyError, HistoryError, LimitReachedError, SolveError
+from gyrify.limits import Watch
+from gyrify.model import Slice
+from gyrify.solve.linear import linear_solver
+from gyrify.solve.quasistatic import State, grow
+from gyrify.store.history import History
+from gyrify.store.journal import Journal
+
+
+@dataclass(frozen=True, eq=False)
+class Progress:
+    """What an observer sees at each accepted increment.
+
+    Attributes
+    ----------
+    slice : Slice
+        The problem.
+    state : State
+        The accepted state.
+    fraction : float
+        Growth time over the duration of growth.
+    elapsed_s : float
+        Time since this process took the run up [s].
+    start_fraction : float
+        Where this process took it up.
+    """
+
+    slice: Slice
+    state: State
+    fraction: float
+    elapsed_s: float
+    start_fraction: float
+
+    @property
+    def remaining_s(self) -> float:
+        """Estimated time to the end [s], at the mean pace so far."""
+        done = self.fraction - self.start_fraction
+        return self.elapsed_s * (1.0 - self.fraction) / done if done > 0.0 else 0.0
+
+
+Observer = Callable[[Progress], None]
+Watcher = Callable[[], None]
+
+
+class Run:
+    """A run that this process holds; from `gyrify.simulation.new_run` or `stored_run`.
+
+    Parameters
+    ----------
+    problem : Slice
+        The problem.
+    journal : Journal
+        Where accepted increments go; it holds one at least.
+    note : str
+        What a user should know about the folder.
+    """
+
+    def __init__(self, problem: Slice, journal: Journal, note: str = "") -> None:
+        self.problem, self.journal, self.note = problem, journal, note
+        if len(journal) == 0:
+            journal.append(State.reference(problem.mesh.n_points, problem.mesh.n_dim), 0.0)
+
+    @property
+    def history(self) -> History:
+        """What is stored so far."""
+        return History(self.journal)
+
+    def grow(self, observers: Iterable[Observer] = (), watch: Watcher = lambda: None) -> None:
+        """Grow from the last stored state to the end; whatever happens, how it ended is recorded.
+
+        Parameters
+        ----------
+        observers : iterable of callables
+            As in `gyrify.simulation.simulate`.
+        watch : callable
+            Called at each Newton iteration; may raise to end the run there.
+
+        Raises
+        ------
+        SolveError
+            If growth cannot be completed.
+        HistoryError
+            If the disk is full.
+        """
+        self.problem.compile()
+        solver = linear_solver(self.problem.config.solver.linear_solver).name
+        self.journal.set_meta(status="running", reason="", advice="", stable="", linear_solver=solver)
+        try:
+            self._accept(tuple(observers), watch)
+            last = self.journal.state(len(self.journal) - 1)
+            stable = self.problem.is_stable(last.position / self.problem.stepping.end, last.u)
+            self.journal.set_meta(status="completed", stable="true" if stable else "false")
+        except LimitReachedError as limit:
+            self.journal.set_meta(status="stopped", reason=limit.message, advice=limit.advice)
+        except KeyboardInterrupt:
+            self._record("interrupted", "It was interrupted by the user.", "Continue with `gyrify resume`.")
+            raise
+        except GyrifyError as failure:
+            self._record("failed", failure.message, failure.advice)
+            raise
+        except Exception as error:
+            reason = f"An unexpected {type(error).__name__} ended it: {error}."
+            self._record("failed", reason, "Once its cause is removed, continue with `gyrify resume`.")
+            raise
+
+    def _accept(self, observers: tuple[Observer, ...], watch: Watcher) -> None:
+        """Store and tell every increment that the solver accepts."""
+        problem, stepping = self.problem, self.problem.stepping
+        state = self.journal.state(len(self.journal) - 1)
+        start, begun = state.position / stepping.end, time.perf_counter()
+        limits = Watch(problem.config.limits.wall_time, problem.config.limits.memory)
+
+        def look() -> None:
+            watch()
+            limits()
+
+        detector = Detector(problem, stepping, self.journal.onset is not None, look)
+        inspect = (detector.inspect,) if problem.config.stability.detect else ()
+        clock = begun
+        try:
+            for accepted in grow(problem, stepping, state, look, *inspect):
+                now = time.perf_counter()
+                self.journal.append(accepted, now - clock, detector.n_negative, detector.onset)
+                clock = now
+                progress = Progress(problem, accepted, accepted.position / stepping.end, now - begun, start)
+                for observer in observers:
+                    observer(progress)
+        except SolveError:
+            if detector.onset is not None:
+                self.journal.set_onset(detector.onset)
+            raise
+
+    def _record(self, status: str, reason: str, advice: str) -> None:
+        """Note how the run ended; what ended it may keep even that from being written."""
+        with suppress(HistoryError):
+            self.journal.set_meta(status=status, reason=reason, advice=advice)
