@@ -15,6 +15,7 @@ import numpy as np
 from gyrify.config.run_sections import OutputField
 from gyrify.errors import ConfigError, HistoryError
 from gyrify.solve.types import FloatArray
+from gyrify.store.faults import storage_faults
 from gyrify.store.fields import POINT_FIELDS, fields
 from gyrify.store.history import History
 from gyrify.store.vtkhdf import written_states
@@ -70,17 +71,13 @@ def export(
     chosen = tuple(history.config.output.fields if names is None else names)
     states = _states(history, index)
     target = Path(path)
-    try:
+    with storage_faults(target.parent, str(target)):
         target.parent.mkdir(parents=True, exist_ok=True)
         if format == "csv":
             return _write_csv(history, target, states)
         if format == "stl":
             return _write_stl(history, target, states)
         return (_write_xdmf if format == "xdmf" else _write_vtu)(history, target, states, chosen)
-    except OSError as error:
-        raise HistoryError(
-            f"{target} could not be written: {error}.", "Free space on the disk, or choose another folder."
-        ) from error
 
 
 def _states(history: History, index: int | None) -> list[int]:
@@ -163,7 +160,7 @@ def _write_xdmf(
             for centre, data in (("Node", point_data), ("Cell", {k: v[0] for k, v in cell_data.items()})):
                 for name, values in data.items():
                     place, kind = f"{number}/{name}", _XDMF_KINDS[values.shape[1] if values.ndim == 2 else 1]
-                    file.create_dataset(place, data=values, compression="gzip", shuffle=True)
+                    file.create_dataset(place, data=values, compression=1, shuffle=True)
                     attribute = ElementTree.SubElement(
                         grid, "Attribute", Name=name, Center=centre, AttributeType=kind
                     )

@@ -21,6 +21,7 @@ from scipy.sparse import csr_array
 
 from gyrify.config.run_sections import ALL_FIELDS, OutputField
 from gyrify.metrics import cortical_thickness
+from gyrify.metrics.contour import distance_to_line
 from gyrify.model import Slice
 from gyrify.physics.growth import growth_stretch, growth_tensor, out_of_plane_growth
 from gyrify.physics.neo_hookean import derivatives
@@ -149,7 +150,7 @@ class StateFields:
             "mean_stress": lambda: (self.stress[0] + self.stress[1] + self.stress[2]) / 3.0,
             "circumferential_stress": self._circumferential_stress,
             "thickness": self._thickness,
-            "curvature": lambda: self._on_contour(curvature(self._contour)),
+            "curvature": self._curvature,
             "contact_force": self._contact_force,
         }
 
@@ -178,10 +179,10 @@ class StateFields:
         """(2, 2, n_cells) elastic deformation gradient in the plane."""
         problem, F = self._problem, self._F
         if not problem.tangential.any():
-            return F / self._stretch
+            return np.asarray(F / self._stretch)
         # The inverse of lambda (I - N N) + N N is the same form with 1 / lambda.
         inverse = growth_tensor(1.0 / self._stretch, problem.tangential, problem.mesh.across)
-        return np.einsum("ikc,ckj->ijc", F, inverse)
+        return np.asarray(np.einsum("ikc,ckj->ijc", F, inverse))
 
     @cached_property
     def stress(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -205,7 +206,7 @@ class StateFields:
         """sqrt(3/2 s:s) of the three-dimensional deviator s [Pa]."""
         s11, s22, s33, s12 = self.stress
         squares = (s11 - s22) ** 2 + (s22 - s33) ** 2 + (s33 - s11) ** 2
-        return np.sqrt(0.5 * squares + 3.0 * s12 * s12)
+        return np.asarray(np.sqrt(0.5 * squares + 3.0 * s12 * s12))
 
     def _circumferential_stress(self) -> FloatArray:
         """Normal stress along the layers as they lie now [Pa].
@@ -229,21 +230,36 @@ class StateFields:
         everywhere[self._problem.mesh.contour] = values
         return everywhere
 
-    def _thickness(self) -> FloatArray:
+    @property
+    def _shift(self) -> float:
+        """Distance in x from the contour of a strip to its continuation [mm]; 0 for a ring."""
         mesh = self._problem.mesh
+        start, after = mesh.points[mesh.contour[:2], 0]
+        return 0.0 if mesh.period is None else float(np.copysign(mesh.period, after - start))
+
+    def _curvature(self) -> FloatArray:
+        # A strip's contour that runs to the right has the tissue on its right.
+        outwards = -1.0 if self._shift > 0.0 else 1.0
+        return self._on_contour(outwards * curvature(self._contour, self._shift))
+
+    def _thickness(self) -> FloatArray:
+        mesh, shift = self._problem.mesh, self._shift
         interface = mesh.points[mesh.interface] + self._u[mesh.interface]
-        return self._on_contour(cortical_thickness(self._contour, interface))
+        if shift == 0.0:
+            return self._on_contour(cortical_thickness(self._contour, interface))
+        line = np.concatenate([np.add(interface, [images * shift, 0.0]) for images in (-1, 0, 1)])
+        return self._on_contour(distance_to_line(self._contour, line, closed=False))
 
     def _contact_force(self) -> FloatArray:
         """Force of the barrier on each point, minus the gradient of the contact energy [Pa mm]."""
         if not self._problem.config.contact.enabled:
             return np.zeros_like(self._u)
         gradient = self._problem.contact_energy(self._u_start).evaluate(self._u, 1).gradient
-        return np.zeros_like(self._u) if gradient is None else -gradient
+        return np.zeros_like(self._u) if gradient is None else 0.0 - gradient
 
 
-def curvature(contour: FloatArray) -> FloatArray:
-    r"""Signed curvature at the vertices of a closed contour, of the circle through each and its neighbours.
+def curvature(contour: FloatArray, shift: float = 0.0) -> FloatArray:
+    r"""Signed curvature at the vertices of a contour, of the circle through each and its neighbours.
 
     .. math:: k = \frac{2 \, a \times b}{|a| |b| |a + b|}
 
@@ -253,7 +269,9 @@ def curvature(contour: FloatArray) -> FloatArray:
     Parameters
     ----------
     contour : (n, 2) float array
-        Vertices in order, counter-clockwise [mm].
+        Vertices in order [mm]; the first follows the last.
+    shift : float
+        How far in x it follows it [mm]: the period of a periodic contour, 0 for a closed one.
 
     Returns
     -------
@@ -261,6 +279,7 @@ def curvature(contour: FloatArray) -> FloatArray:
         k [1/mm].
     """
     z = contour[:, 0] + 1j * contour[:, 1]
-    before, after = z - np.roll(z, 1), np.roll(z, -1) - z
+    after = np.concatenate([z[1:], z[:1] + shift]) - z
+    before = np.concatenate([after[-1:], after[:-1]])
     cross = (np.conj(before) * after).imag
     return np.asarray(2.0 * cross / (np.abs(before) * np.abs(after) * np.abs(before + after)))

@@ -27,8 +27,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gyrify.config.run_sections import OutputField
-from gyrify.errors import HistoryError
 from gyrify.solve.types import FloatArray
+from gyrify.store.faults import storage_faults
 from gyrify.store.fields import POINT_FIELDS, STATIC_FIELDS, UNITS, FieldMaker, StateFields
 from gyrify.store.history import History
 
@@ -74,7 +74,11 @@ _LAYOUTS: Final[dict[OutputField, Layout]] = {
 
 
 def write_vtkhdf(
-    history: History, path: str | Path, *, fields: Sequence[OutputField] | None = None, every: int | None = None
+    history: History,
+    path: str | Path,
+    *,
+    fields: Sequence[OutputField] | None = None,
+    every: int | None = None,
 ) -> None:
     """Write a run as a time series for ParaView.
 
@@ -102,17 +106,15 @@ def write_vtkhdf(
     steps = written_states(len(history), output.every if every is None else every)
     target = Path(path)
     partial = target.with_name(target.name + ".partial")
-    try:
-        with h5py.File(partial, "w") as file:
-            root = file.create_group("VTKHDF")
-            _write_geometry(root, history, steps)
-            _write_fields(root, history, steps, names)
-        os.replace(partial, target)
-    except OSError as error:
-        partial.unlink(missing_ok=True)
-        raise HistoryError(
-            f"{target} could not be written: {error}.", "Free space on the disk, or choose another folder."
-        ) from error
+    with storage_faults(target.parent, str(target)):
+        try:
+            with h5py.File(partial, "w") as file:
+                root = file.create_group("VTKHDF")
+                _write_geometry(root, history, steps)
+                _write_fields(root, history, steps, names)
+            os.replace(partial, target)
+        finally:
+            partial.unlink(missing_ok=True)
 
 
 def written_states(n_states: int, every: int) -> list[int]:
@@ -224,9 +226,9 @@ def _encoded(values: FloatArray, layout: Layout) -> bytes:
         bits += 0x80
         bits &= 0xFFFFFF00
     planes = np.ascontiguousarray(single.view(np.uint8).reshape(-1, 4).T)
-    checksum = zlib.adler32(planes)
+    checksum = zlib.adler32(planes.data)
     if not layout.stored:
-        return zlib.compress(planes, 1)
+        return zlib.compress(planes.data, 1)
     blocks = [b"\x78\x01"]
     for byte, plane in enumerate(planes):
         if layout.rounded and byte == 0:
@@ -249,7 +251,7 @@ def _stored(plane: NDArray[np.uint8]) -> Iterator[bytes]:
 def _deflated(plane: NDArray[np.uint8]) -> bytes:
     """Compressed blocks of a deflate stream, none of them the last, padded to whole bytes."""
     stream = zlib.compressobj(1, zlib.DEFLATED, -zlib.MAX_WBITS)
-    return stream.compress(plane) + stream.flush(zlib.Z_FULL_FLUSH)
+    return stream.compress(plane.data) + stream.flush(zlib.Z_FULL_FLUSH)
 
 
 @lru_cache(maxsize=8)

@@ -1,0 +1,252 @@
+"""Recheck a stored run from its files alone: every row, every increment, every number derived from them."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from gyrify.config import Config
+from gyrify.errors import HistoryError
+from gyrify.reevaluation import Increment, reevaluated
+from gyrify.store.history import History
+from gyrify.summary import metrics_rows, summarise
+
+# Rounding of a residual over the tolerance that it is compared with.
+RESIDUAL_MARGIN: Final = 1e-3
+# Largest energy created, over the work of growth: the error of the quadrature at a few increments.
+ENERGY_BOUND: Final = 0.02
+# Rounding of a sum over all cells.
+DESCENT_BOUND: Final = 1e-10
+# Largest relative difference between a stored and a recomputed metric.
+METRIC_BOUND: Final = 1e-9
+
+
+@dataclass(frozen=True)
+class Check:
+    """One thing that was checked.
+
+    Attributes
+    ----------
+    name : str
+        What was checked.
+    passed : bool
+        Whether it holds.
+    sentence : str
+        What was found.
+    worst, bound : float or None
+        The number closest to failing and where it would fail, if there is one.
+    """
+
+    name: str
+    passed: bool
+    sentence: str
+    worst: float | None = None
+    bound: float | None = None
+
+
+@dataclass(frozen=True)
+class Verification:
+    """All checks of one run."""
+
+    checks: tuple[Check, ...]
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check holds."""
+        return all(check.passed for check in self.checks)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, fit for JSON."""
+        return {"passed": self.passed, "checks": [dict(vars(check)) for check in self.checks]}
+
+    def __str__(self) -> str:
+        lines = [
+            f"{'ok    ' if check.passed else 'FAILED'} {check.name}: {check.sentence}"
+            for check in self.checks
+        ]
+        return "\n".join(lines)
+
+
+def verify(run: str | Path) -> Verification:
+    """Recheck a run from its folder.
+
+    Parameters
+    ----------
+    run : path
+        Run folder.
+
+    Returns
+    -------
+    Verification
+        Every check; where a state is damaged, those that need the states are left out.
+
+    Raises
+    ------
+    HistoryError
+        If the folder holds no run, or a journal that cannot be opened.
+    """
+    folder = Path(run)
+    history = History.load(folder)
+    checks = [_check_states(history), _check_config(history, folder)]
+    summary = _read_summary(folder)
+    checks.append(_check_hash(history, summary))
+    if not checks[0].passed:
+        return Verification(tuple(checks))
+    increments = list(reevaluated(history))
+    checks += _check_increments(history, increments)
+    checks.append(_check_balance(increments))
+    checks += _check_metrics(history, folder, summary)
+    return Verification(tuple(checks))
+
+
+def _check_states(history: History) -> Check:
+    """Every row there, undamaged, in order, finite, clamped where it must be."""
+    mesh, stepping, name = history.mesh, history.slice.stepping, "states"
+    position = 0
+    try:
+        for number in range(len(history)):
+            state = history.journal.state(number)
+            if state.u.shape != mesh.points.shape or not np.isfinite(state.u).all():
+                return Check(name, False, f"Increment {number} is not a finite displacement of this mesh.")
+            if number > 0 and (state.span < 1 or state.position != position + state.span):
+                return Check(name, False, f"Increment {number} does not follow the one before it.")
+            if state.u[mesh.clamped].any() or (number == 0 and (state.u.any() or state.position != 0)):
+                return Check(name, False, f"Increment {number} moves points that are held.")
+            position = state.position
+    except HistoryError as error:
+        return Check(name, False, error.message)
+    if history.status == "completed" and position != stepping.end:
+        return Check(name, False, "The run is marked completed but does not reach the end of growth.")
+    return Check(name, True, f"All {len(history)} states are there, undamaged and in order.")
+
+
+def _check_config(history: History, folder: Path) -> Check:
+    path, recorded = folder / "config.toml", history.config.config_hash
+    if not path.is_file():
+        return Check("configuration", True, "There is no config.toml to compare; the journal has its own.")
+    if Config.load(path).config_hash != recorded:
+        return Check("configuration", False, "config.toml is not the configuration that the journal records.")
+    return Check("configuration", True, f"config.toml and the journal agree on {recorded[:12]}.")
+
+
+def _read_summary(folder: Path) -> dict[str, Any] | None:
+    path = folder / "summary.json"
+    if not path.is_file():
+        return None
+    try:
+        return dict(json.loads(path.read_text(encoding="utf-8")))
+    except (ValueError, TypeError) as error:
+        raise HistoryError(f"{path} is damaged: {error}.", "Delete it; it can be rebuilt.") from error
+
+
+def _check_hash(history: History, summary: dict[str, Any] | None) -> Check:
+    found = history.result_hash
+    if summary is None:
+        return Check("result hash", True, f"It is {found[:12]}; there is no summary.json to compare with.")
+    if summary.get("result_hash") != found:
+        return Check("result hash", False, "The stored states are not those that summary.json was made of.")
+    return Check("result hash", True, f"The journal and summary.json agree on {found[:12]}.")
+
+
+def _check_increments(history: History, increments: list[Increment]) -> Iterator[Check]:
+    """Bounds that each increment must keep by itself."""
+    if not increments:
+        return
+    tolerance = history.slice.stepping.criterion.force
+
+    def check(name: str, key: Callable[[Increment], float], bound: float, low: bool, what: str) -> Check:
+        """Largest value at most a bound; ``low``: smallest value above it."""
+        values = np.array([key(increment) for increment in increments])
+        at = int(np.argmin(values) if low else np.argmax(values))
+        worst = float(values[at])
+        passed = bool(np.isfinite(values).all()) and (worst > bound if low else worst <= bound)
+        relation = "above" if low else "at most"
+        sentence = f"{what} is {worst:.3g}, in increment {at + 1} (allowed: {relation} {bound:.3g})."
+        return Check(name, passed, sentence, worst, bound)
+
+    margin = RESIDUAL_MARGIN * tolerance
+    yield check(
+        "residual", lambda i: i.residual, tolerance + margin, False, "The largest nodal force [Pa mm]"
+    )
+    yield check(
+        "stored residual",
+        lambda i: abs(i.residual - i.stored_residual),
+        margin,
+        False,
+        "The largest difference between a stored and a recomputed residual [Pa mm]",
+    )
+    yield check("descent", lambda i: i.rise, DESCENT_BOUND, False, "The largest relative rise of the energy")
+    yield check("volume", lambda i: i.min_J, 0.0, True, "The smallest J")
+    yield check("elastic volume", lambda i: i.min_J_elastic, 0.0, True, "The smallest J_e")
+    if history.config.contact.enabled:
+        yield check("gap", lambda i: i.gap, 0.0, True, "The smallest gap [mm]")
+        crossing = sum(not increment.is_path_free for increment in increments)
+        sentence = f"{crossing} of {len(increments)} straight paths between states cross the contour."
+        yield Check("path", crossing == 0, sentence, float(crossing), 0.0)
+
+
+def _check_balance(increments: list[Increment]) -> Check:
+    """Work of growth against the energies that it went into."""
+    work = math.fsum(abs(i.work) for i in increments)
+    if work == 0.0:
+        return Check("energy balance", True, "Nothing has grown.", 0.0, ENERGY_BOUND)
+    shares = {
+        name: math.fsum(getattr(i, name) for i in increments) / work
+        for name in ("elastic", "contact", "dissipated", "work_error")
+    }
+    created = math.fsum(max(i.defect, 0.0) for i in increments) / work
+    lost = math.fsum(max(-i.defect, 0.0) for i in increments) / work
+    sentence = (
+        f"Of the work of growth ({work:.4g} Pa mm²) {shares['elastic']:.2%} is stored elastically, "
+        f"{shares['contact']:.2%} in contact, {shares['dissipated']:.2%} dissipated; the increments create "
+        f"{created:.2%} and lose {lost:.2%} (error of the work {shares['work_error']:.1g}, allowed to create "
+        f"{ENERGY_BOUND:.0%})."
+    )
+    return Check("energy balance", created <= ENERGY_BOUND, sentence, created, ENERGY_BOUND)
+
+
+def _check_metrics(history: History, folder: Path, summary: dict[str, Any] | None) -> Iterator[Check]:
+    """Stored metrics against recomputed ones."""
+    path = folder / "metrics.csv"
+    if path.is_file():
+        with path.open(newline="", encoding="utf-8") as file:
+            stored = {str(n): row for n, row in enumerate(csv.DictReader(file))}
+        found = {str(n): row for n, row in enumerate(metrics_rows(history))}
+        yield _compare("metrics.csv", stored, found)
+    if summary is not None:
+        yield _compare("summary.json", summary, summarise(history))
+
+
+def _compare(name: str, stored: dict[str, Any], found: dict[str, Any]) -> Check:
+    differing = list(_differences(stored, found, ""))
+    if not differing:
+        return Check(name, True, f"Equals what the states give, to {METRIC_BOUND:g}.", 0.0, METRIC_BOUND)
+    more = f" and {len(differing) - 1} more" if len(differing) > 1 else ""
+    return Check(name, False, f"Differs from what the states give: {differing[0]}{more}.")
+
+
+def _differences(stored: Any, found: Any, place: str) -> Iterator[str]:
+    """Names of the values that differ, tables opened."""
+    if isinstance(stored, dict) and isinstance(found, dict):
+        for key in sorted({*stored, *found}):
+            inner = f"{place}.{key}" if place else str(key)
+            yield from _differences(stored.get(key, "missing"), found.get(key, "missing"), inner)
+    elif not _is_equal(stored, found):
+        yield f"{place} = {stored}, not {found}"
+
+
+def _is_equal(stored: Any, found: Any) -> bool:
+    """Equal as text (CSV holds nothing else), or as numbers up to rounding."""
+    if stored == found or str(stored) == str(found) or (stored == "" and found is None):
+        return True
+    try:
+        return math.isclose(float(stored), float(found), rel_tol=METRIC_BOUND, abs_tol=1e-12)
+    except (TypeError, ValueError):
+        return False
