@@ -74,7 +74,8 @@ class Detector:
         try:
             self.n_negative = self._tangent(after, before, self._system).n_negative
             if self.n_negative > 0 and not self.found:
-                self.onset = locate_onset(self.problem, self.stepping, before, after, self.watch)
+                system = self._system_for(after)
+                self.onset = locate_onset(self.problem, self.stepping, before, after, system, self.watch)
                 self.found = True
         except SolveError:
             if conservative:
@@ -86,9 +87,16 @@ class Detector:
     def _tangent(self, state: State, before: State, system: System) -> Tangent:
         return self.problem.tangent(state.position / self.stepping.end, state.u, before.u, system)
 
+    def _system_for(self, state: State) -> System:
+        """System whose pattern depends on the state alone, so that a resumed run finds the same bits."""
+        known = self._system
+        if known is not None and np.array_equal(known.couplings, state.couplings):
+            return known
+        return self.problem.system(state.couplings)
+
     def _leave(self, before: State, after: State) -> State:
         """Stable state that an unstable equilibrium leads to."""
-        problem, system = self.problem, self.problem.system(after.couplings)
+        problem, system = self.problem, self._system_for(after)
         stability = problem.config.stability
         if not stability.follow_branch:
             eigenvalue = self._tangent(after, before, system).lowest().eigenvalue
@@ -118,8 +126,8 @@ class Detector:
             text += f"; stability is lost at growth time {onset.growth_time:.6g} in mode {onset.mode_number}"
         return SolveError(
             f"{text}.",
-            "Set stability.follow_branch = true to fold, or choose a dissipation.kind; "
-            "stability.detect = false stays on the unstable branch.",
+            "Set stability.follow_branch = true to fold, mesh.node_jitter above 0 to drift into folds, "
+            "or choose a dissipation.kind.",
         )
 
 
@@ -128,6 +136,7 @@ def locate_onset(
     stepping: Stepping,
     before: State,
     after: State,
+    system: System,
     watch: Callable[[], None] = lambda: None,
 ) -> Onset:
     """Find where the lowest eigenvalue of elasticity and contact vanishes inside an increment.
@@ -141,6 +150,8 @@ def locate_onset(
     before, after : State
         The last stable and the first unstable accepted state. Between them the same incremental problem is
         solved with parts of the span.
+    system : System
+        Linear system of the free degrees of freedom.
     watch : callable
         Called at each Newton iteration; may raise to stop.
 
@@ -149,7 +160,6 @@ def locate_onset(
     Onset
         At the end of the increment if a partial increment cannot be solved.
     """
-    system = problem.system(after.couplings)
     start, end = (state.position / stepping.end for state in (before, after))
     known: dict[float, tuple[FloatArray, Eigenpair]] = {}
 

@@ -145,6 +145,11 @@ class Slice:
         return dissipation.kind == "none" or dissipation.number == 0.0
 
     @property
+    def shift_mass(self) -> FloatArray | None:
+        """See `gyrify.solve.quasistatic.Problem`: the mass, where nothing dissipates."""
+        return self.free_mass if self.is_conservative else None
+
+    @property
     def barrier_stiffness(self) -> float:
         """Stiffness of the contact barrier [Pa]."""
         chosen = self.config.contact.barrier_stiffness

@@ -91,7 +91,7 @@ def settle(
         if departures > 0 and tangent.is_stable:
             return Settled(u, residual, departures, stats)
         mode = oriented(u, tangent.lowest().vector)
-        solution = minimise(total, leave(total, u, mode, size), system, criterion, candidates, watch)
+        solution = minimise(total, leave(total, u, mode, size), system, criterion, candidates, watch, mass)
         u, residual, stats = solution.u, solution.residual, stats + solution.stats
         if solution.result is not Result.CONVERGED:
             raise _lost(f"the descent from it failed: {solution.result.message}", solution.result.advice)

@@ -12,6 +12,7 @@ from gyrify.energy.total import TotalEnergy
 from gyrify.errors import SolveError
 from gyrify.solve.linear import Factor
 from gyrify.solve.result import Result, Solution, Stats
+from gyrify.solve.shift import shifted_factor
 from gyrify.solve.system import System
 from gyrify.solve.types import FloatArray, IntArray
 
@@ -44,6 +45,7 @@ def minimise(
     criterion: Criterion,
     candidates: Callable[[FloatArray], IntArray],
     watch: Callable[[], None] = lambda: None,
+    mass: FloatArray | None = None,
 ) -> Solution:
     """Minimise the total energy from a starting state.
 
@@ -61,6 +63,9 @@ def minimise(
         Couplings near a state, for the pattern.
     watch : callable
         Called at each iteration; may raise to stop.
+    mass : (n_free,) float array, optional
+        Lumped area [mm^2]: an indefinite Hessian is then shifted by a multiple of it instead of projected,
+        which is what leads along the flat valleys of a tissue that buckles without dissipation.
 
     Returns
     -------
@@ -83,7 +88,7 @@ def minimise(
             break
         iteration += 1
         try:
-            du = _direction(total, u, evaluations, gradient, system, candidates)
+            du = _direction(total, u, evaluations, gradient, system, candidates, mass)
         except SolveError:
             result = Result.SINGULAR
             break
@@ -116,10 +121,14 @@ def _direction(
     gradient: FloatArray,
     system: System,
     candidates: Callable[[FloatArray], IntArray],
+    mass: FloatArray | None,
 ) -> FloatArray:
-    """Newton direction of the exact Hessian, or of the projected one where that is indefinite."""
-    factor: Factor = system.factorise(evaluations, lambda: candidates(u))
-    if factor.n_negative > 0:
+    """Newton direction of the exact Hessian, or of the projected or shifted one where that is indefinite."""
+    data = system.assemble(evaluations, lambda: candidates(u))
+    factor: Factor = system.factorise_data(data)
+    if factor.n_negative > 0 and mass is not None:
+        factor = shifted_factor(system, data, mass, growth=4.0)
+    elif factor.n_negative > 0:
         factor = system.factorise(total.evaluate(u, project_psd=True), lambda: candidates(u))
     du = np.zeros(system.n_dofs)
     du[system.free] = -factor.solve(gradient)

@@ -65,6 +65,11 @@ class State:
 class Problem(Protocol):
     """What the driver needs to know of the tissue."""
 
+    @property
+    def shift_mass(self) -> FloatArray | None:
+        """Diagonal of the mass that indefinite Hessians are shifted by; None to project them."""
+        ...
+
     def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:
         """Total energy at a fraction of the growth duration, for an increment from a state."""
         ...
@@ -194,7 +199,9 @@ def _attempt(
     start_fraction, fraction = state.position / stepping.end, (state.position + span) / stepping.end
     total = problem.energy(fraction, state, start_fraction)
     guess = _predict(total, state, span)
-    solution = minimise(total, guess, system, stepping.criterion, problem.candidates, watch)
+    solution = minimise(
+        total, guess, system, stepping.criterion, problem.candidates, watch, problem.shift_mass
+    )
     if solution.result is Result.CONVERGED and not problem.is_path_admissible(state.u, solution.u):
         return replace(solution, result=Result.CROSSING_PATH)
     return solution

@@ -20,15 +20,13 @@ import scipy.sparse.linalg as sla
 from gyrify.energy.term import Evaluation
 from gyrify.errors import SolveError
 from gyrify.solve.linear import Factor
+from gyrify.solve.shift import shifted_factor
 from gyrify.solve.system import System
 from gyrify.solve.types import FloatArray, IntArray
 
 # Largest residual of an eigenpair, ||K v - lambda M v|| over ||K|| ||v||.
 EIGEN_TOLERANCE = 1e-6
 _ARNOLDI_TOLERANCE = 1e-9
-# First shift over the largest diagonal entry of M^-1 K, and how often it may be doubled.
-_FIRST_SHIFT = 1e-5
-_DOUBLINGS = 60
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +108,6 @@ class Tangent:
     ) -> None:
         self._system, self.mass = system, mass
         self._data = system.assemble(evaluations, candidates)
-        self._diagonal = system.pattern.indptr[:-1]
         self._factor: Factor | None = system.factorise_data(self._data)
         self.n_negative = self._factor.n_negative
 
@@ -160,15 +157,7 @@ class Tangent:
                 self._factor = self._system.factorise_data(self._data)
             return self._factor
         self._factor = None
-        tau = max(-1.2 * guess, _FIRST_SHIFT * float((self._data[self._diagonal] / self.mass).max()))
-        for _ in range(_DOUBLINGS):
-            shifted = self._data.copy()
-            shifted[self._diagonal] += tau * self.mass
-            factor = self._system.factorise_data(shifted)
-            if factor.n_negative == 0:
-                return factor
-            tau *= 2.0
-        raise _unfound("no shift makes the stiffness positive definite")
+        return shifted_factor(self._system, self._data, self.mass, -1.2 * guess)
 
     def _checked(self, v: FloatArray) -> Eigenpair:
         """Eigenpair of a vector of unit mass, by its Rayleigh quotient."""

@@ -35,7 +35,10 @@ def to_row(onset: Onset) -> tuple[Any, ...]:
 
 def from_row(row: tuple[Any, ...]) -> Onset:
     """Onset of a row of the table."""
-    return Onset(row[1], (row[2], row[3]), *row[4:7], _points(row[7]), _points(row[8]))
+    _, time, low, high, eigenvalue, mode_number, wavelength, displacement, vector = row
+    return Onset(
+        time, (low, high), eigenvalue, mode_number, wavelength, _points(displacement), _points(vector)
+    )
 
 
 def _points(blob: bytes) -> FloatArray:

@@ -1,0 +1,53 @@
+"""An indefinite stiffness made definite by a multiple of the mass: K + tau M."""
+
+from __future__ import annotations
+
+from gyrify.errors import SolveError
+from gyrify.solve.linear import Factor
+from gyrify.solve.system import System
+from gyrify.solve.types import FloatArray
+
+# First shift over the largest diagonal entry of M^-1 K, and how often it may be raised.
+_FIRST_SHIFT = 1e-5
+_RAISES = 60
+
+
+def shifted_factor(
+    system: System, data: FloatArray, mass: FloatArray, least: float = 0.0, growth: float = 2.0
+) -> Factor:
+    """Factor of K + tau M with the first tau of a geometric sequence that leaves no negative pivot.
+
+    Parameters
+    ----------
+    system : System
+        Linear system of the free degrees of freedom.
+    data : float array
+        K on the pattern of the system [Pa].
+    mass : (n_free,) float array
+        Diagonal of M [mm^2].
+    least : float
+        Smallest tau to try [Pa/mm^2].
+    growth : float
+        Ratio of the sequence [-].
+
+    Returns
+    -------
+    Factor
+
+    Raises
+    ------
+    SolveError
+        If no shift is enough.
+    """
+    diagonal = system.pattern.indptr[:-1]
+    tau = max(least, _FIRST_SHIFT * float((data[diagonal] / mass).max()))
+    for _ in range(_RAISES):
+        shifted = data.copy()
+        shifted[diagonal] += tau * mass
+        factor = system.factorise_data(shifted)
+        if factor.n_negative == 0:
+            return factor
+        tau *= growth
+    raise SolveError(
+        "No shift makes the stiffness positive definite.", "Check that all stiffnesses are finite."
+    )
