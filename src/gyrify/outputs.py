@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
 
+from gyrify.errors import HistoryError
 from gyrify.report.figures import folded_figure, save_figure
+from gyrify.store.faults import storage_faults
 from gyrify.store.history import History
 from gyrify.summary import summarise, write_metrics, write_summary
 
 
 def write_outputs(history: History, folder: Path) -> dict[str, Any]:
-    """Write ``metrics.csv``, ``folded.png`` and ``summary.json``.
+    """Write ``summary.json``, ``metrics.csv`` and ``folded.png``, each by atomic rename.
 
     Parameters
     ----------
@@ -26,12 +30,55 @@ def write_outputs(history: History, folder: Path) -> dict[str, Any]:
     -------
     dict
         The summary.
+
+    Raises
+    ------
+    HistoryError
+        If the folder cannot be written; nothing is left half written.
+    """
+    summary = write_state(history, folder)
+    with _whole_files(folder):
+        write_metrics(history, folder / "metrics.csv")
+        save_figure(folded_picture(history, summary), folder / "folded.png")
+    return summary
+
+
+def write_state(history: History, folder: Path) -> dict[str, Any]:
+    """Write ``summary.json`` alone, in a moment: what a folder should tell when there is no time for more.
+
+    Parameters
+    ----------
+    history : History
+        The run, complete or not.
+    folder : Path
+        Run folder.
+
+    Returns
+    -------
+    dict
+        The summary.
+
+    Raises
+    ------
+    HistoryError
+        If the folder cannot be written.
     """
     summary = summarise(history)
-    write_metrics(history, folder / "metrics.csv")
-    save_figure(folded_picture(history, summary), folder / "folded.png")
-    write_summary(summary, folder / "summary.json")
+    with _whole_files(folder):
+        write_summary(summary, folder / "summary.json")
     return summary
+
+
+@contextmanager
+def _whole_files(folder: Path) -> Iterator[None]:
+    """Say in plain words that a disk is full, and leave no half of a file behind."""
+    try:
+        with storage_faults(folder, f"The outputs in {folder}"):
+            yield
+    except HistoryError:
+        for partial in folder.glob("*.partial"):
+            partial.unlink(missing_ok=True)
+        raise
 
 
 def folded_picture(history: History, summary: dict[str, Any]) -> Figure:

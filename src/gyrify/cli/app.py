@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
+
 from cyclopts import App, Parameter
 from cyclopts.exceptions import CycloptsError
 
@@ -16,6 +17,7 @@ from gyrify import __version__
 from gyrify.cli import config, presets
 from gyrify.cli import run as run_commands
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, USAGE
+from gyrify.cli.early import ignore_interrupts
 from gyrify.cli.streams import complain, print_json
 from gyrify.errors import ConfigError, GyrifyError, HistoryError
 
@@ -61,6 +63,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader of a pipe has left
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return COMPLETED
+    finally:
+        if arguments is None:  # all is done: an interrupt now would only garble the end of the process
+            ignore_interrupts()
 
 
 def _report(error: GyrifyError, tokens: Sequence[str]) -> int:

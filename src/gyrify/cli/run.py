@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import signal
 import threading
-from collections.abc import Callable
+from contextlib import AbstractContextManager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, STOPPED
-from gyrify.cli.overrides import ConfigPath, Overrides
+from gyrify.cli.interrupts import Interrupts
+from gyrify.cli.overrides import ConfigPath, Overrides, once, read_value, split_assignment
 from gyrify.cli.streams import complain, print_json, say
-from gyrify.errors import SolveError
+from gyrify.errors import HistoryError, SolveError
 
 if TYPE_CHECKING:
-    from gyrify.simulation import Observer
-    from gyrify.store import History
+    from gyrify.run import Observer, Run
 
 DEFAULT = Overrides()
 _EXIT_CODES = {"completed": COMPLETED, "failed": FAILED, "stopped": STOPPED, "interrupted": INTERRUPTED}
@@ -46,20 +45,22 @@ def run(
     quiet : bool
         Show no progress.
     """
-    resolved = overrides.resolve(config)
-    folder = out if out is not None else Path("runs") / resolved.config_hash[:12]
-    from gyrify.simulation import simulate
+    with Interrupts(json) as interrupts:
+        resolved = overrides.resolve(config)
+        folder = out if out is not None else Path("runs") / resolved.config_hash[:12]
+        from gyrify.simulation import new_run
 
-    return _carry_out(
-        lambda observers: simulate(resolved, folder, observers=observers, overwrite=overwrite),
-        folder,
-        json,
-        quiet,
-    )
+        begin = new_run(resolved, folder, overwrite=overwrite)
+        return _carry_out(begin, folder, interrupts, json, quiet)
 
 
 def resume(
-    run_folder: Annotated[Path, Parameter(name="RUN")], /, *, json: bool = False, quiet: bool = False
+    run_folder: Annotated[Path, Parameter(name="RUN")],
+    /,
+    *,
+    set_: Annotated[tuple[str, ...], Parameter(name="--set", negative="", allow_leading_hyphen=True)] = (),
+    json: bool = False,
+    quiet: bool = False,
 ) -> int:
     """Continue a run that ended early, to the same result as if it had not.
 
@@ -67,50 +68,65 @@ def resume(
     ----------
     run_folder : Path
         Run folder.
+    set_ : sequence of str, optional
+        New value in limits or output, as section.field=value; may be repeated.
     json : bool
         Print the summary as one JSON document.
     quiet : bool
         Show no progress.
     """
-    from gyrify.simulation import resume as continue_run
+    with Interrupts(json) as interrupts:
+        overrides = {key: read_value(text) for key, text in once(map(split_assignment, set_)).items()}
+        from gyrify.simulation import stored_run
 
-    return _carry_out(
-        lambda observers: continue_run(run_folder, observers=observers), run_folder, json, quiet
-    )
+        return _carry_out(stored_run(run_folder, overrides), run_folder, interrupts, json, quiet)
 
 
-def _carry_out(solve: Callable[[list[Observer]], History], folder: Path, json: bool, quiet: bool) -> int:
-    """Solve, write all derived files whatever the end was, and say what it came to."""
-    from gyrify.cli.progress import progress_observer
-    from gyrify.outputs import write_outputs
-    from gyrify.store import History
+def _carry_out(
+    begin: AbstractContextManager[Run], folder: Path, interrupts: Interrupts, json: bool, quiet: bool
+) -> int:
+    """Grow, write all derived files whatever the end was, and say what it came to."""
+    from gyrify.outputs import write_outputs, write_state
 
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
-    note = _compilation_note(quiet)
-    try:
-        with progress_observer(quiet) as observers:
-            solve([_silencer(note), *observers])
-    except (SolveError, KeyboardInterrupt) as end:
-        if isinstance(end, KeyboardInterrupt) and not (folder / "journal.sqlite").is_file():
-            raise
-    finally:
-        note.cancel()
-    history = History.load(folder)
-    if history.status == "interrupted":
-        complain(f"Interrupted at {history.fractions[-1]:.1%} of growth; every accepted increment is stored.")
-        complain(f"Continue with: gyrify resume {folder}")
-        return INTERRUPTED
-    summary = write_outputs(history, folder)
+    with begin as run:
+        interrupts.guard(folder)
+        if run.note and not quiet:
+            complain(run.note)
+        try:
+            _grow(run, interrupts, quiet)
+            history = run.history
+            is_brief = history.status == "interrupted"
+            summary = write_state(history, folder) if is_brief else write_outputs(history, folder)
+        except HistoryError as fault:
+            complain(str(fault))
+            if json:
+                print_json({"error": "HistoryError", "message": fault.message, "advice": fault.advice})
+            return FAILED
     if json:
         print_json(summary)
-    else:
+    if summary["status"] == "interrupted":
+        complain(f"Interrupted at {history.fractions[-1]:.1%} of growth; every accepted increment is stored.")
+        complain(f"Continue with: gyrify resume {folder}")
+    elif not json:
         _report(summary, folder)
-    return _EXIT_CODES[history.status]
+    return INTERRUPTED if interrupts.requested else _EXIT_CODES[summary["status"]]
+
+
+def _grow(run: Run, interrupts: Interrupts, quiet: bool) -> None:
+    """Grow to whatever end; the run keeps a record of it."""
+    from gyrify.cli.progress import progress_observer
+
+    note = _compilation_note(quiet)
+    with suppress(SolveError, KeyboardInterrupt), progress_observer(quiet) as observers:
+        try:
+            run.grow([_silencer(note), *observers], interrupts.watch)
+        finally:
+            note.cancel()
 
 
 def _compilation_note(quiet: bool) -> threading.Timer:
-    """Says, if the first increment is slow to come, that kernels are being compiled."""
-    text = "Compiling the element kernels for this machine (first run only, up to a minute) ..."
+    """Says, if the first increment is slow to come, what it is waiting for."""
+    text = "Preparing the element kernels; the first run on a machine compiles them (up to a minute) ..."
     timer = threading.Timer(2.5, lambda: None if quiet else complain(text))
     timer.daemon = True
     timer.start()
