@@ -13,7 +13,8 @@ from gyrify.metrics.folds import (
 )
 from gyrify.metrics.gap import min_gap
 from gyrify.metrics.gyrification import gyrification_index
-from gyrify.metrics.measure import Measures, measure
+from gyrify.metrics.measure import measure
+from gyrify.metrics.measures import Measures
 from gyrify.metrics.thickness import cortical_thickness
 
 __all__ = [

@@ -6,6 +6,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gyrify.metrics.contour import FloatArray, as_contour, distance_to_line
+from gyrify.metrics.folds import Folds
+
+# Where nothing is folded the thickness is averaged over about this many points along the contour.
+_SMOOTH_POINTS = 50
 
 
 def cortical_thickness(
@@ -34,3 +38,14 @@ def cortical_thickness(
     """
     points = as_contour(contour) if at is None else np.asarray(at, dtype=np.float64).reshape(-1, 2)
     return distance_to_line(points, as_contour(interface))
+
+
+def thickness_at_folds(folds: Folds, interface: FloatArray, *, closed: bool = True) -> tuple[float, float]:
+    """Return the mean thickness at crowns and at fundi, or for both that along a contour without folds."""
+    if folds.n_gyri == 0:
+        every = max(1, len(folds.points) // _SMOOTH_POINTS)
+        mean = float(distance_to_line(folds.points[::every], interface, closed=closed).mean())
+        return mean, mean
+    ends = np.concatenate([folds.crown_points, folds.fundus_points])
+    at = distance_to_line(ends, interface, closed=closed)
+    return float(at[: folds.n_gyri].mean()), float(at[folds.n_gyri :].mean())

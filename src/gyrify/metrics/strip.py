@@ -1,0 +1,131 @@
+"""Metrics of a strip: one period of a contour that runs towards +x, the tissue below it.
+
+All lengths are per period. Exposed lengths are those of a body of n + 1 periods, cut vertically at the
+deepest point of the contour and level far below, less those of a body of n periods and of the period on the
+lower side: what the cut sides add is the same in both. The convex hull is the level line on the highest
+crowns, one period long.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import shapely
+
+from gyrify.metrics.contour import BLOCK, FloatArray, filled, offset_outline, require_positive
+from gyrify.metrics.folds import Folds, depth_below, periodic_extrema
+from gyrify.metrics.gap import DETOUR
+from gyrify.metrics.gyrification import closing_length, exposed_length
+from gyrify.metrics.measures import Measures
+from gyrify.metrics.thickness import thickness_at_folds
+
+# Relative to the length of the contour, as in `gyrify.metrics.gap`.
+_ROUNDING = 1e-9
+
+
+def measure_strip(
+    contour: FloatArray,
+    interface: FloatArray,
+    period: float,
+    closing_radius: float,
+    gyrus_prominence: float,
+    samples: int,
+) -> Measures:
+    """Measure one deformed state of a strip; parameters as in `gyrify.metrics.measure`.
+
+    Heights are measured from the mean level of the contour. The gap counts neighbours as in
+    `gyrify.metrics.min_gap`, images included; a contour without folds has none, and it is infinite.
+    """
+    require_positive("period", period)
+    lowest = int(np.argmin(contour[:, 1]))
+    line = np.concatenate([contour[lowest:], contour[:lowest] + np.array([period, 0.0])])
+    crossing = not shapely.linestrings(_repeated(line, period, range(-1, 3))).is_simple
+    length = float(_arc(line, period)[-1])
+    closing, exposed, offset = _exposed_lengths(line, period, closing_radius)
+    folds = _folds(line, period, gyrus_prominence, samples)
+    depth = depth_below(folds.fundus_points, offset, closing_radius) if folds.n_gyri else np.zeros(1)
+    crown, fundus = thickness_at_folds(folds, _repeated(interface, period, range(-1, 3)), closed=False)
+    return Measures(
+        gi_hull=length / period,
+        gi_closing=length / closing,
+        gi_exposed=length / exposed if exposed > 0 else math.inf,
+        closing_radius=float(closing_radius),
+        n_gyri=folds.n_gyri,
+        sulcal_depth_max=float(depth.max()),
+        sulcal_depth_mean=float(depth.mean()),
+        thickness_crown=crown,
+        thickness_fundus=fundus,
+        contour_length=length,
+        min_gap=0.0 if crossing else _gap(line, period),
+        self_intersecting=crossing,
+    )
+
+
+def _repeated(line: FloatArray, period: float, periods: range) -> FloatArray:
+    """Return copies of one period, in order from left to right."""
+    return np.concatenate([line + np.array([k * period, 0.0]) for k in periods])
+
+
+def _arc(line: FloatArray, period: float) -> FloatArray:
+    """Return the (n + 1,) arc length [mm] from the first vertex to each one and to the end of the period."""
+    edges = np.diff(np.concatenate([line, line[:1] + np.array([period, 0.0])]), axis=0)
+    return np.concatenate([[0.0], np.cumsum(np.hypot(edges[:, 0], edges[:, 1]))])
+
+
+def _folds(line: FloatArray, period: float, prominence: float, samples: int) -> Folds:
+    """Return gyri and sulci: extrema of the height above the mean level."""
+    arc = _arc(line, period)
+    at = np.sort(np.concatenate([np.arange(samples) * (arc[-1] / samples), arc[1:-1]]))
+    end = line[0] + np.array([period, 0.0])
+    points = np.column_stack([np.interp(at, arc, np.append(line[:, i], end[i])) for i in (0, 1)])
+    height = np.append(line[:, 1], end[1])
+    level = float(np.sum(np.diff(arc) * 0.5 * (height[1:] + height[:-1])) / arc[-1])
+    above = points[:, 1] - level
+    return Folds(points, above, *periodic_extrema(above, prominence))
+
+
+def _exposed_lengths(
+    line: FloatArray, period: float, radius: float
+) -> tuple[float, float, shapely.LinearRing]:
+    """Return the lengths of the closing's outline and of the exposed contour, and the offset outline.
+
+    The period from ``line[0]``, the deepest vertex, lies in the middle of the body whose outline is returned.
+    """
+    overhang = float(np.ptp(line[:, 0])) - period
+    # So many that a disc, wherever it lies, feels at most one of the ends.
+    n = 1 + math.ceil((4 * radius + 2 * max(overhang, 0.0)) / period)
+    bodies = [_body(line, period, count, radius) for count in (n, n + 1)]
+    offsets = [offset_outline(body, radius) for body in bodies]
+    closing = closing_length(offsets[1], radius) - closing_length(offsets[0], radius) - period
+    exposed = exposed_length(bodies[1], radius) - exposed_length(bodies[0], radius) - period
+    return closing, exposed, offsets[1]
+
+
+def _body(line: FloatArray, period: float, count: int, radius: float) -> shapely.Polygon:
+    """Return some periods of tissue above a level floor that is farther from the contour than any disc."""
+    top = _repeated(line, period, range(-(count // 2), count - count // 2))
+    end = top[:1] + np.array([count * period, 0.0])
+    floor = float(line[0, 1]) - 2.0 * float(np.ptp(line[:, 1])) - 4.0 * radius
+    corners = np.array([[end[0, 0], floor], [top[0, 0], floor]])
+    return filled(np.concatenate([top, end, corners]))
+
+
+def _gap(line: FloatArray, period: float) -> float:
+    """Return the smallest distance from a vertex of the period to an edge, images included, no neighbours."""
+    arc = _arc(line, period)
+    plane = line[:, 0] + 1j * line[:, 1]
+    edge = np.diff(np.append(plane, plane[0] + period))
+    lengths = np.abs(edge)
+    backwards = np.conj(edge) / lengths
+    smallest = math.inf
+    every = np.arange(len(line))
+    for block in np.array_split(every, 1 + len(every) ** 2 // BLOCK):
+        for image in (-1, 0, 1):
+            local = (plane[block, None] - plane - image * period) * backwards
+            along = np.clip(local.real, 0.0, lengths)
+            distance = np.hypot(local.real - along, local.imag)
+            way = np.abs(arc[:-1] + image * arc[-1] + along - arc[block, None])
+            apart = way > DETOUR * distance + _ROUNDING * arc[-1]
+            smallest = min(smallest, float(np.min(distance[apart], initial=np.inf)))
+    return smallest
