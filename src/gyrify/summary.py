@@ -37,6 +37,7 @@ def measure_state(history: History, index: int = -1) -> Measures:
         chosen.closing_radius,
         chosen.gyrus_prominence,
         chosen.samples,
+        history.mesh.period,
     )
 
 

@@ -49,7 +49,7 @@ def test_one_cleft(start: int) -> None:
     assert ours.n_gyri == 1
     assert ours.sulcal_depth_max == pytest.approx(DEPTH - sagitta, abs=2e-3)
     assert ours.sulcal_depth_mean == ours.sulcal_depth_max
-    # the nearest point of the interface lies right below on the flat, obliquely beside the fundus: 1.5 mm times sin(atan(1/4))
+    # to the interface: straight down from the flat, obliquely from the fundus, 1.5 mm times sin(atan(1/4))
     assert ours.thickness_crown == pytest.approx(1.5, abs=1e-9)
     assert ours.thickness_fundus == pytest.approx(1.5 / math.sqrt(17), rel=1e-9)
     assert not ours.self_intersecting
