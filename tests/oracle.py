@@ -105,7 +105,7 @@ class SliceOracle:
         return lumped
 
     def drag(self, u: np.ndarray, before: np.ndarray, span: float) -> np.ndarray:
-        """Force c m (u - u_n) / dt; number = c R^2 / (E duration), pi R^2 = slice area, span = dt / duration."""
+        """Force c m (u - u_n) / dt; number = c R^2 / (E duration), pi R^2 = area, span = dt / duration."""
         R_squared = self.config.geometry.area / np.pi
         c_over_dt = self.config.dissipation.number * self.config.material.young_modulus / R_squared / span
         return c_over_dt * self.lumped_area[:, None] * (u - before)

@@ -80,7 +80,7 @@ def test_rigid_motion_of_an_open_contour_meets_no_barrier(rng: np.random.Generat
 
 
 def test_rigid_step_is_free_of_viscosity_but_not_of_drag(rng: np.random.Generator) -> None:
-    """Kelvin-Voigt is objective; drag acts against a fixed background: moving m = 2 by (3, 4) costs c/2 2 25."""
+    """Kelvin-Voigt is objective; drag has a fixed background: moving m = 2 by (3, 4) costs c/2 2 25."""
     from gyrify.energy.viscous import DragEnergy, green_lagrange
 
     points, cells, _ = bodies.distorted_square(rng)

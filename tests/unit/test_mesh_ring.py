@@ -12,12 +12,13 @@ from gyrify.mesh import GREY, WHITE
 from gyrify.mesh.grading import layer_fractions
 from gyrify.mesh.quality import triangle_quality
 from gyrify.mesh.ring import elliptic_ring
+from gyrify.mesh.sheet import Layers
 
 A, B, H, T = 39.42, 32.85, 0.5, 1.5
 
 
 def ring(n_around=216, n_layers=17, n_cortex=6, **options):
-    return elliptic_ring((A, B), H, T, n_around, n_layers, n_cortex, **options)
+    return elliptic_ring((A, B), H, T, Layers(n_around, n_layers, n_cortex, **options))
 
 
 def areas(mesh) -> np.ndarray:
@@ -140,7 +141,7 @@ def test_quality_by_hand() -> None:
 
 @pytest.mark.parametrize("thickness", [0.3, 0.75, 1.5, 3.0, 8.0, 15.0])
 def test_any_thickness_meshes_well(thickness: float) -> None:
-    mesh = elliptic_ring((A, B), H, thickness, 216, 17, 6)
+    mesh = elliptic_ring((A, B), H, thickness, Layers(216, 17, 6))
     assert triangle_quality(mesh.cell_points).min() > 0.05
     assert on_ellipse(mesh.points[mesh.interface], A - thickness, B - thickness) == pytest.approx(1.0)
 
@@ -151,7 +152,7 @@ def test_any_thickness_meshes_well(thickness: float) -> None:
 def test_what_cannot_be_meshed_is_refused_with_a_reason(thickness: float, n_around: int, word: str) -> None:
     """The wall is 32.85 / 2 = 16.425 mm; layers of 0.01 / 6 mm on 24 points are slivers."""
     with pytest.raises(MeshError, match=word) as refusal:
-        elliptic_ring((A, B), H, thickness, n_around, 17, 6)
+        elliptic_ring((A, B), H, thickness, Layers(n_around, 17, 6))
     assert refusal.value.advice
 
 

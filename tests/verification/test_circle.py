@@ -21,6 +21,7 @@ CIRCLE = {
     "geometry.shape": "circle",
     "mesh.node_jitter": 0.0,
     "dissipation.kind": "none",
+    "stability.detect": False,  # the circular branch, even where it has become unstable
     "contact.enabled": False,
     "solver.increments": 2,  # without dissipation and folds, the end does not depend on the path
 }
@@ -29,7 +30,7 @@ FINE = {"mesh.n_around": 432, "mesh.n_layers": 34, "mesh.n_cortex_layers": 12}
 
 
 def exact(config: Config) -> BaseState:
-    """The state at the end of growth; radii from pi R^2 = area, moduli and rates as the configuration says."""
+    """The state at the end of growth; pi R^2 = area, moduli and rates as the configuration says."""
     R = np.sqrt(config.geometry.area / np.pi)
     growth, material = config.growth, config.material
     return base_state(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 import shapely
@@ -10,7 +12,7 @@ from gyrify.store import History
 
 
 def crossings(before: np.ndarray, after: np.ndarray) -> int:
-    """Passages of vertices through edges while every vertex of a closed line moves straight from here to there.
+    """Passages of vertices through edges while every vertex of a closed line moves straight to its end.
 
     A vertex p is on the line through an edge a-b when cross(p - a, b - a) = 0, a quadratic in time; it passes
     the edge if it then lies between the ends.
@@ -59,9 +61,9 @@ def test_the_check_itself_by_hand(vertex: int, to: tuple, expected: int) -> None
 
 
 def test_the_check_sees_a_passage_there_and_back() -> None:
-    """Both ends simple, the path between them not: a tip and a floor that change places are never seen apart."""
+    """A square passes through another one and out again: both ends are simple, the path is not."""
     square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
-    both = np.concatenate([square, square + [3, 0]])
+    both = np.concatenate([square, square + np.array([3.0, 0.0])])
     after = both + np.repeat([[6.0, 0.0], [0.0, 0.0]], 4, axis=0)
     assert crossings(both, both) == 0
     assert crossings(both, after) > 0
@@ -84,7 +86,7 @@ def test_every_increment_is_simple(folded: History) -> None:
 
 def test_every_path_between_increments_is_free_of_crossings(folded: History) -> None:
     contours = [folded.contour(k) for k in range(len(folded))]
-    assert [crossings(a, b) for a, b in zip(contours, contours[1:], strict=False)] == [0] * (
+    assert [crossings(a, b) for a, b in pairwise(contours)] == [0] * (
         len(contours) - 1
     )
 
@@ -92,7 +94,7 @@ def test_every_path_between_increments_is_free_of_crossings(folded: History) -> 
 def test_without_contact_the_same_run_goes_through_itself(overlapping: History, folded: History) -> None:
     contours = [overlapping.contour(k) for k in range(len(overlapping))]
     assert not shapely.LinearRing(contours[-1]).is_simple
-    assert sum(crossings(a, b) for a, b in zip(contours, contours[1:], strict=False)) > 0
+    assert sum(crossings(a, b) for a, b in pairwise(contours)) > 0
     # until the first touch, contact changes nothing
     assert np.array_equal(overlapping.contour(3), folded.contour(3))
 
@@ -105,4 +107,4 @@ def test_the_reference_slice_never_crosses() -> None:
     history = simulate(Config.preset("reference-slice"))
     contours = [history.contour(k) for k in range(len(history))]
     assert all(shapely.LinearRing(contour).is_simple for contour in contours)
-    assert sum(crossings(a, b) for a, b in zip(contours, contours[1:], strict=False)) == 0
+    assert sum(crossings(a, b) for a, b in pairwise(contours)) == 0

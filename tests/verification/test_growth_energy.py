@@ -127,7 +127,7 @@ def test_growth_tensors_by_hand() -> None:
 
 
 def test_patch_of_distorted_cells_carries_a_constant_stress(rng: np.random.Generator) -> None:
-    """Affine displacement of the boundary, equal growth: the inside follows, and every cell has the same stress."""
+    """Affine displacement of the boundary, equal growth: the inside follows, every stress is the same."""
     from gyrify.physics.isotropic import first_piola
 
     points, cells, boundary = bodies.distorted_square(rng, 8)

@@ -41,9 +41,9 @@ def test_hash_depends_on_every_bit(tiny: Config) -> None:
     assert simulate(tiny.replace(**{"growth.duration": longer})).result_hash != simulate(tiny).result_hash
 
 
-@pytest.mark.parametrize("solver", ["auto", "superlu"])
-def test_one_and_two_worker_processes_give_the_same_hashes(tiny: Config, solver: str) -> None:
-    configs = [tiny.replace(**{"seed": seed, "solver.linear_solver": solver}).to_toml() for seed in (0, 1)]
+def test_one_and_two_worker_processes_give_the_same_hashes(tiny: Config) -> None:
+    choices = [(seed, solver) for solver in ("auto", "superlu") for seed in (0, 1)]
+    configs = [tiny.replace(**{"seed": s, "solver.linear_solver": solver}).to_toml() for s, solver in choices]
     here = [run_hash(config) for config in configs]
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
         there = list(pool.map(run_hash, configs))
@@ -51,11 +51,10 @@ def test_one_and_two_worker_processes_give_the_same_hashes(tiny: Config, solver:
     assert here[0] != here[1]
 
 
-# 3: early; 21: sulci are in contact, couplings are in the pattern, and increments have been halved before
-@pytest.mark.parametrize("number", [3, 21])
-def test_a_resumed_run_equals_one_that_never_stopped(
-    folding: Config, folded: History, tmp_path: Path, number: int
-) -> None:
+def test_a_resumed_run_equals_one_that_never_stopped(folding: Config, folded: History, tmp_path: Path) -> None:
+    number = 20  # sulci are in contact, couplings are in the pattern, increments have been halved
+    assert len(folded.journal.state(number).couplings) > 0
+    assert len(folded) > number + 1
     with pytest.raises(KeyboardInterrupt):
         simulate(folding, tmp_path / "run", observers=[interrupt_after(number)])
     stopped = History.load(tmp_path / "run")

@@ -1,0 +1,223 @@
+"""Newton's method and the growth increments, on problems small enough to solve by hand."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from gyrify.energy.term import Evaluation, Hessian, Pattern
+from gyrify.energy.total import FreePattern, TotalEnergy
+from gyrify.errors import SolveError
+from gyrify.solve.linear import SuperLU
+from gyrify.solve.newton import Criterion, minimise
+from gyrify.solve.quasistatic import TICKS, State, Stepping, grow
+from gyrify.solve.result import Result
+from gyrify.solve.system import System
+
+NONE = np.empty((0, 2), dtype=np.int64)
+DIAGONAL = Pattern(np.arange(2), np.arange(2))
+
+
+class Well:
+    """x^4/4 - a x^2/2 + y^2/2 in one point (x, y): minima at x = +-sqrt(a), a saddle at 0."""
+
+    def __init__(self, a: float, limit: float = np.inf) -> None:
+        self.a, self.limit = a, limit
+
+    def evaluate(self, u: np.ndarray, order: int, project_psd: bool = False) -> Evaluation:
+        x, y = u[0]
+        if abs(x) > self.limit:
+            return Evaluation(np.inf)
+        stiffness = 3 * x**2 - self.a
+        if project_psd:
+            stiffness = abs(stiffness)
+        return Evaluation(
+            x**4 / 4 - self.a * x**2 / 2 + y**2 / 2,
+            np.array([[x**3 - self.a * x, y]]) if order >= 1 else None,
+            Hessian(DIAGONAL, np.array([stiffness, 1.0])) if order >= 2 else None,
+        )
+
+    def max_step(self, u: np.ndarray, du: np.ndarray) -> float:  # noqa: ARG002
+        return 1.0
+
+
+def system() -> System:
+    return System(np.arange(2), 2, 2, DIAGONAL, SuperLU(), NONE)
+
+
+def solved(well: Well, x: float, force: float = 1e-12, iterations: int = 50):
+    start = np.array([[x, 1.0]])
+    return minimise(TotalEnergy([well]), start, system(), Criterion(force, iterations), lambda _: NONE)
+
+
+@pytest.mark.parametrize(("start", "end"), [(3.0, 2.0), (0.1, 2.0), (-0.1, -2.0)])
+def test_newton_finds_the_minimum_on_its_side_of_the_saddle(start: float, end: float) -> None:
+    """a = 4: from 0.1 the stiffness is negative and the plain Newton step would run to the saddle at 0."""
+    solution = solved(Well(4.0), start)
+    assert solution.result is Result.CONVERGED
+    assert solution.u == pytest.approx(np.array([[end, 0.0]]), abs=1e-12)
+    assert solution.residual <= 1e-12
+
+
+@pytest.mark.parametrize("mass", [0.1, 10.0])
+def test_a_shift_by_the_mass_finds_the_same_minimum(mass: float) -> None:
+    """Instead of a projection, the indefinite stiffness -4 + 3 x^2 gets a multiple of the mass added."""
+    start = np.array([[0.1, 1.0]])
+    masses = np.full(2, mass)
+    total, criterion = TotalEnergy([Well(4.0)]), Criterion(1e-12, 50)
+    solution = minimise(total, start, system(), criterion, lambda _: NONE, lambda: None, masses)
+    assert solution.result is Result.CONVERGED
+    assert solution.u == pytest.approx(np.array([[2.0, 0.0]]), abs=1e-12)
+
+
+def test_convergence_is_quadratic() -> None:
+    """From 3 in the well of a = 4, by hand: x - (x^3 - 4 x) / (3 x^2 - 4), the digits double."""
+    expected, x = [], 3.0
+    for _ in range(4):
+        x -= (x**3 - 4 * x) / (3 * x**2 - 4)
+        expected.append(x)
+    found = [solved(Well(4.0), 3.0, iterations=n).u[0, 0] for n in (1, 2, 3, 4)]
+    assert found == pytest.approx(expected, rel=1e-13)
+    assert abs(found[3] - 2.0) < 1e-4 < 1e-2 < abs(found[1] - 2.0)
+
+
+def test_the_iteration_cap_is_a_failure_and_never_an_acceptance() -> None:
+    solution = solved(Well(4.0), 3.0, iterations=2)
+    assert solution.result is Result.MAX_NEWTON
+    assert solution.residual > 1e-3
+    assert solution.stats.newton_iterations == 2
+    assert solution.result.advice
+
+
+def test_the_last_allowed_iteration_may_converge() -> None:
+    needed = solved(Well(4.0), 3.0).stats.newton_iterations
+    assert solved(Well(4.0), 3.0, iterations=needed).result is Result.CONVERGED
+    assert solved(Well(4.0), 3.0, iterations=needed - 1).result is Result.MAX_NEWTON
+
+
+def test_the_line_search_never_enters_infinite_energy() -> None:
+    """Beyond |x| = 2.2 nothing exists; the projected step from 0.9 (stiffness 1.57) would land near 2.7."""
+    step = (4 * 0.9 - 0.9**3) / abs(3 * 0.81 - 4)
+    assert 0.9 + step > 2.2
+    solution = solved(Well(4.0, limit=2.2), 0.9)
+    assert solution.result is Result.CONVERGED
+    assert solution.u[0, 0] == pytest.approx(2.0, abs=1e-12)
+
+
+def test_an_inadmissible_start_is_named() -> None:
+    assert solved(Well(4.0, limit=2.2), 3.0).result is Result.INADMISSIBLE
+
+
+def test_no_room_for_a_step_is_named() -> None:
+    well = Well(4.0)
+    well.max_step = lambda u, du: 0.0  # noqa: ARG005
+    assert solved(well, 3.0).result is Result.BLOCKED
+
+
+def test_an_energy_that_nothing_lowers_is_named() -> None:
+    class Lie(Well):
+        """Its gradient points the wrong way."""
+
+        def evaluate(self, u, order, project_psd=False):
+            right = super().evaluate(u, order, project_psd)
+            return Evaluation(right.value, -right.gradient if order >= 1 else None, right.hessian)
+
+    assert solved(Lie(4.0), 3.0).result is Result.LINE_SEARCH
+
+
+def test_every_result_says_what_happened_and_what_to_try() -> None:
+    for result in Result:
+        assert result.message
+        assert bool(result.advice) == (result is not Result.CONVERGED)
+
+
+@dataclass
+class Pull:
+    """A problem whose solution is x = 10 x growth; paths longer than ``longest`` count as crossing."""
+
+    longest: float = np.inf
+    refuses_after: float = np.inf
+    shift_mass: np.ndarray | None = None
+
+    def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:  # noqa: ARG002
+        goal, dead = 10.0 * fraction, fraction > self.refuses_after
+
+        class Spring(Well):
+            def evaluate(self, u, order, project_psd=False):  # noqa: ARG002
+                if dead:
+                    return Evaluation(np.inf)
+                arm = u - [goal, 0.0]
+                return Evaluation(0.5 * float(np.sum(arm**2)), arm, Hessian(DIAGONAL, np.ones(2)))
+
+        return TotalEnergy([Spring(0.0)])
+
+    def system(self, couplings: np.ndarray) -> System:  # noqa: ARG002
+        return system()
+
+    def candidates(self, u: np.ndarray) -> np.ndarray:  # noqa: ARG002
+        return NONE
+
+    def is_path_admissible(self, u: np.ndarray, u_end: np.ndarray) -> bool:
+        return bool(np.abs(u_end - u).max() <= self.longest)
+
+
+def states(problem: Pull, increments: int = 4, smallest: float = 1e-6) -> list[State]:
+    stepping = Stepping(increments, smallest, Criterion(1e-9, 20))
+    return list(grow(problem, stepping, State.reference(1, 2)))
+
+
+def test_growth_reaches_its_end_in_the_nominal_increments() -> None:
+    found = states(Pull())
+    assert [state.position for state in found] == [k * TICKS for k in (1, 2, 3, 4)]
+    assert [state.u[0, 0] for state in found] == pytest.approx([2.5, 5.0, 7.5, 10.0])
+    assert found[-1].stats.rejected == 0
+
+
+def test_increments_whose_path_crosses_are_halved_until_it_does_not() -> None:
+    """An increment moves 10 / 4 = 2.5; paths longer than 0.7 cross: it takes 2.5 / 4 = 0.625."""
+    found = states(Pull(longest=0.7))
+    steps = np.diff([0.0, *(state.u[0, 0] for state in found)])
+    assert steps == pytest.approx(np.full(16, 0.625))
+    assert found[-1].stats.rejected > 0
+    assert all(after.position - before.position == after.span for before, after in pairwise(found))
+
+
+def test_spans_double_again_only_on_the_grid_of_nominal_increments() -> None:
+    for state in states(Pull(longest=0.7)):
+        assert state.position % state.next_span == 0
+        assert state.next_span <= TICKS
+
+
+def test_growth_that_cannot_go_on_stops_with_its_reason() -> None:
+    with pytest.raises(SolveError, match="growth inverts a cell") as failure:
+        states(Pull(refuses_after=0.6), smallest=1e-3)
+    # 0.6 of the duration is approached to within the smallest increment
+    assert "59.9" in failure.value.message or "60.0" in failure.value.message
+    assert "increments" in failure.value.advice
+
+
+def test_total_energy_and_pattern_keep_free_entries_only() -> None:
+    """Three unknowns, the middle one held: of (0,0) (0,1) (0,2) (2,2) three remain, and (1,1) none."""
+    free = np.array([0, 2])
+    rows, cols = np.array([0, 0, 0, 2]), np.array([0, 1, 2, 2])
+    pattern = FreePattern(free, 3, rows, cols)
+    assert pattern.rows.tolist() == [0, 0, 1]
+    assert pattern.cols.tolist() == [0, 1, 1]
+    data = np.zeros(3)
+    pattern.add(Pattern(rows, cols), np.array([1.0, 2.0, 3.0, 4.0]), data)
+    assert data.tolist() == [1.0, 3.0, 4.0]
+    assert not FreePattern(free, 3, np.array([0]), np.array([0])).holds(Pattern(rows, cols))
+
+
+def test_total_energy_is_the_sum_and_the_smallest_step() -> None:
+    one, other = Well(4.0), Well(1.0)
+    one.max_step, other.max_step = (lambda u, du: 0.5), (lambda u, du: min(1.0, 0.1 / np.abs(du).max()))  # noqa: ARG005
+    total, u = TotalEnergy([one, other]), np.array([[3.0, 1.0]])
+    assert total.value(u) == pytest.approx(one.evaluate(u, 0).value + other.evaluate(u, 0).value)
+    assert total.gradient(u) == pytest.approx(np.array([[2 * 27.0 - 5 * 3.0, 2.0]]))
+    # the first allows half of du = 2, the second 0.1 of length
+    assert total.max_step(u, np.array([[2.0, 0.0]])) == pytest.approx(0.05)
+    assert TotalEnergy([Well(4.0, limit=1.0), other]).value(u) == np.inf
