@@ -16,6 +16,7 @@ from gyrify.energy.viscous import DragEnergy, KelvinVoigtEnergy, green_lagrange
 from gyrify.errors import ConfigError
 from gyrify.mesh import GREY, Mesh
 from gyrify.mesh.ring import elliptic_ring
+from gyrify.mesh.sheet import Layers
 from gyrify.mesh.strip import periodic_strip
 from gyrify.physics.growth import growth_stretch, growth_tensor, out_of_plane_growth
 from gyrify.physics.neo_hookean import lame_parameters
@@ -43,11 +44,18 @@ def build_mesh(config: Config) -> Mesh:
     _refuse("mesh.element", mesh.element, ("linear",))
     _refuse("mesh.refine", mesh.refine, (0,))
     _refuse("mesh.refine_cortex", mesh.refine_cortex, (0,))
-    columns = (geometry.cortical_thickness, mesh.n_around, mesh.n_layers, mesh.n_cortex_layers)
-    style = (mesh.grading, mesh.split, mesh.node_jitter, config.seed)
+    layers = Layers(
+        n_around=mesh.n_around,
+        n_layers=mesh.n_layers,
+        n_cortex_layers=mesh.n_cortex_layers,
+        grading=mesh.grading,
+        split=mesh.split,
+        node_jitter=mesh.node_jitter,
+        seed=config.seed,
+    )
     if geometry.shape == "strip":
-        return periodic_strip(geometry.length, geometry.depth, *columns, *style)
-    return elliptic_ring(geometry.semi_axes, geometry.hole_fraction, *columns, *style)
+        return periodic_strip(geometry.length, geometry.depth, geometry.cortical_thickness, layers)
+    return elliptic_ring(geometry.semi_axes, geometry.hole_fraction, geometry.cortical_thickness, layers)
 
 
 def _refuse(field: str, value: object, available: tuple[object, ...]) -> None:

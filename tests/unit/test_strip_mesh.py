@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,18 +11,23 @@ import pytest
 from gyrify.config import Config
 from gyrify.energy.kinematics import Simplices
 from gyrify.errors import ConfigError, MeshError
-from gyrify.mesh import GREY
+from gyrify.mesh import GREY, Mesh
+from gyrify.mesh.sheet import Layers
 from gyrify.mesh.strip import periodic_strip
 from gyrify.model import Slice, build_mesh
 
 # 30 mm long, 12 mm deep, a film of 1.5 mm
-STRIP = (30.0, 12.0, 1.5, 40, 9, 3)
+STRIP = (30.0, 12.0, 1.5)
+
+
+def strip(length: float = 30.0, **options: Any) -> Mesh:
+    return periodic_strip(length, *STRIP[1:], Layers(40, 9, 3, **options))
 
 
 @pytest.mark.parametrize("split", ["alternating", "one", "random"])
 @pytest.mark.parametrize("node_jitter", [0.0, 0.1])
 def test_cells_fill_film_and_substrate(split: str, node_jitter: float) -> None:
-    mesh = periodic_strip(*STRIP, split=split, node_jitter=node_jitter)
+    mesh = strip(split=split, node_jitter=node_jitter)
     volumes = Simplices.of(mesh.cell_points, mesh.cells, mesh.n_points).volumes
     assert volumes.min() > 0
     assert volumes.sum() == pytest.approx(30 * 12, rel=1e-13)
@@ -31,7 +37,7 @@ def test_cells_fill_film_and_substrate(split: str, node_jitter: float) -> None:
 
 
 def test_named_lines_run_along_x() -> None:
-    mesh = periodic_strip(*STRIP, node_jitter=0.1)
+    mesh = strip(node_jitter=0.1)
     for line, height in ((mesh.contour, 12.0), (mesh.interface, 10.5), (mesh.clamped, 0.0)):
         assert np.all(mesh.points[line, 1] == height)
         assert line.size == 40
@@ -45,7 +51,7 @@ def test_named_lines_run_along_x() -> None:
 
 
 def test_first_white_layer_is_as_thick_as_a_cortical_one() -> None:
-    mesh = periodic_strip(*STRIP)
+    mesh = strip()
     levels = np.unique(mesh.points[:, 1])
     steps = np.diff(levels)
     assert np.allclose(steps[-3:], 0.5)
@@ -56,7 +62,7 @@ def test_first_white_layer_is_as_thick_as_a_cortical_one() -> None:
 
 
 def test_no_edge_is_a_boundary_but_those_of_contour_and_clamped_line() -> None:
-    mesh = periodic_strip(*STRIP)
+    mesh = strip()
     edges = np.sort(
         np.concatenate([mesh.cells[:, [0, 1]], mesh.cells[:, [1, 2]], mesh.cells[:, [2, 0]]]), axis=1
     )
@@ -68,14 +74,14 @@ def test_no_edge_is_a_boundary_but_those_of_contour_and_clamped_line() -> None:
 
 
 def test_cells_across_the_seam_are_unwrapped() -> None:
-    mesh = periodic_strip(*STRIP)
+    mesh = strip()
     assert np.ptp(mesh.points[mesh.cells][:, :, 0], axis=1).max() > 29
     assert np.ptp(mesh.cell_points[:, :, 0], axis=1).max() == pytest.approx(0.75)
 
 
 def test_uniform_stretch_has_the_same_gradient_across_the_seam() -> None:
     """A displacement linear in y alone is periodic: F = I + du/dX must be the same in all cells."""
-    mesh = periodic_strip(*STRIP, node_jitter=0.05, split="random")
+    mesh = strip(node_jitter=0.05, split="random")
     simplices = Simplices.of(mesh.cell_points, mesh.cells, mesh.n_points)
     u = np.stack([0.3 * mesh.points[:, 1], 0.2 * mesh.points[:, 1]], axis=1)
     gradient = np.einsum("cai,caj->cij", u[mesh.cells], simplices.gradients)
@@ -103,7 +109,7 @@ def test_drag_number_refers_to_the_depth() -> None:
 
 def test_thick_film_is_refused() -> None:
     with pytest.raises(MeshError, match="leaves no white matter in 12 mm"):
-        periodic_strip(30.0, 12.0, 12.0, 40, 9, 3)
+        periodic_strip(30.0, 12.0, 12.0, Layers(40, 9, 3))
     with pytest.raises(ConfigError, match=r"larger geometry\.depth"):
         Config(geometry={"shape": "strip", "depth": 1.5})
 
@@ -114,6 +120,6 @@ def test_thick_film_is_refused() -> None:
 )
 def test_slivers_are_refused_with_the_direction_of_the_remedy(length: float, advice: str) -> None:
     with pytest.raises(MeshError) as refusal:
-        periodic_strip(length, *STRIP[1:])
+        strip(length)
     assert refusal.match("cells of quality")
     assert re.search(advice, refusal.value.advice)

@@ -41,7 +41,7 @@ def require_quality(mesh: Mesh, lowest: float = LOWEST_QUALITY, advice: str = TH
     MeshError
         If the worst quality is below ``lowest``.
     """
-    worst = float(triangle_quality(mesh.cell_points).min())
+    worst = float(triangle_quality(mesh.cell_points[:, :3]).min())
     if worst < lowest:
         raise MeshError(
             f"The mesh has cells of quality {worst:.3g} (1 is equilateral; at least {lowest:g} is needed).",

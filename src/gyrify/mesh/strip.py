@@ -5,24 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from gyrify.errors import MeshError
-from gyrify.mesh.grading import Grading, layer_fractions
-from gyrify.mesh.mesh import GREY, WHITE, FloatArray, Mesh
+from gyrify.mesh.mesh import FloatArray, Mesh
 from gyrify.mesh.quality import require_quality
-from gyrify.mesh.split import Split, split_quadrilaterals
+from gyrify.mesh.sheet import Layers, build_sheet
+
+# The sheet's layers run counter-clockwise, with the outside on the right; in the strip it is on the left.
+_MIRRORED = {3: [0, 2, 1], 6: [0, 2, 1, 5, 4, 3]}
 
 
-def periodic_strip(
-    length: float,
-    depth: float,
-    cortical_thickness: float,
-    n_around: int,
-    n_layers: int,
-    n_cortex_layers: int,
-    grading: Grading = "geometric",
-    split: Split = "alternating",
-    node_jitter: float = 0.0,
-    seed: int = 0,
-) -> Mesh:
+def periodic_strip(length: float, depth: float, cortical_thickness: float, layers: Layers) -> Mesh:
     """Mesh the rectangle 0 <= x < length, 0 <= y <= depth, with the interface at y = depth - T.
 
     The last column of cells joins the first column of points again, one period further. The contour
@@ -36,18 +27,9 @@ def periodic_strip(
         Height of the contour above the clamped line [mm], cortex included.
     cortical_thickness : float
         Thickness T of the grey layer [mm].
-    n_around, n_layers, n_cortex_layers : int
-        Quadrilaterals along the period, across, and across the grey layer; each is split into two triangles.
-        An odd ``n_around`` breaks the alternating split at the seam.
-    grading : {"geometric", "uniform"}
-        Thickness of the white layers; geometric starts at the thickness of a grey layer.
-    split : {"alternating", "one", "random"}
-        Which diagonal splits each quadrilateral.
-    node_jitter : float
-        Largest random shift of a point over its thinner neighbouring layer or, if smaller, over the width of
-        a column. Points of the contour, the interface and the clamped line slide along x only.
-    seed : int
-        Seed of the jitter and of the random split.
+    layers : Layers
+        How the strip is divided; an odd ``n_around`` breaks the alternating split at the seam. Jitter slides
+        points of the contour, the interface and the clamped line along x only.
 
     Returns
     -------
@@ -65,49 +47,23 @@ def periodic_strip(
             f"geometry.cortical_thickness = {T:g} mm leaves no white matter in {depth:.4g} mm.",
             f"Choose a thickness between 0 and {0.95 * depth:.4g} mm, or a larger geometry.depth.",
         )
-    n_white = n_layers - n_cortex_layers
-    white = layer_fractions(n_white, T / n_cortex_layers / (depth - T), grading)
-    grey = np.linspace(0.0, 1.0, n_cortex_layers + 1)[1:]
-    levels = np.concatenate([white * (depth - T), depth - T + grey * T])
-    rng = np.random.default_rng(seed)
-    points = _points(levels, length, n_around, n_white, node_jitter, rng)
-    cells, layer = split_quadrilaterals(n_around, n_layers, split, rng, closed=True)
-    layers = np.arange((n_layers + 1) * n_around).reshape(n_layers + 1, n_around)
+    white = depth - T
+    sheet = build_sheet(layers, T / white, (white, T), length)
+    height = np.minimum(sheet.depth, 1.0) * white + np.maximum(sheet.depth - 1.0, 0.0) * T
     mesh = Mesh(
-        points=points,
-        # The ring's layers run counter-clockwise, with the outside on the right; here it is on the left.
-        cells=np.ascontiguousarray(cells[:, [0, 2, 1]]),
-        region=np.where(layer >= n_white, GREY, WHITE).astype(np.int8),
-        contour=layers[-1].copy(),
-        interface=layers[n_white].copy(),
-        clamped=layers[0].copy(),
-        across=np.tile([0.0, 1.0], (cells.shape[0], 1)),
+        points=np.stack([length * sheet.along, height], axis=1),
+        cells=np.ascontiguousarray(sheet.cells[:, _MIRRORED[sheet.cells.shape[1]]]),
+        region=sheet.region,
+        contour=sheet.rows[-1],
+        interface=sheet.rows[sheet.interface_row],
+        clamped=sheet.rows[0],
+        across=np.tile([0.0, 1.0], (sheet.cells.shape[0], 1)),
         is_closed=False,
         period=length,
     )
-    require_quality(mesh, advice=_advice(length / n_around, np.diff(levels)))
+    levels = np.unique(height[np.concatenate(sheet.rows)])
+    require_quality(mesh, advice=_advice(length / sheet.rows[-1].size, np.diff(levels)))
     return mesh
-
-
-def _points(
-    levels: FloatArray,
-    length: float,
-    n_around: int,
-    interface_row: int,
-    node_jitter: float,
-    rng: np.random.Generator,
-) -> FloatArray:
-    """Grid points, layer by layer from below, shifted by up to ``node_jitter``."""
-    x, y = np.meshgrid(length * np.arange(n_around) / n_around, levels)
-    noise = rng.uniform(-1.0, 1.0, size=(2, *x.shape))
-    if node_jitter > 0.0:
-        steps = np.diff(levels)
-        local = np.minimum(np.concatenate([steps[:1], steps]), np.concatenate([steps, steps[-1:]]))[:, None]
-        upwards = node_jitter * local * noise[0]
-        upwards[[0, interface_row, levels.size - 1]] = 0.0
-        x = x + node_jitter * np.minimum(local, length / n_around) * noise[1]
-        y = y + upwards
-    return np.stack([x, y], axis=-1).reshape(-1, 2)
 
 
 def _advice(column: float, layers: FloatArray) -> str:
