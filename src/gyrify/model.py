@@ -98,6 +98,13 @@ class Slice:
         white_moduli = lame_parameters(material.young_modulus_white, material.poisson_ratio_white)
         self.mu, self.kappa = (np.where(grey, g, w) for g, w in zip(grey_moduli, white_moduli, strict=True))
 
+    def varied(self, config: Config) -> Slice:
+        """Slice of another configuration on the same mesh; what depends on the mesh alone is shared."""
+        other = Slice(config, self.mesh)
+        shared = ("simplices", "pattern", "surface", "lumped_area", "free", "free_mass")
+        other.__dict__.update({name: getattr(self, name) for name in shared})
+        return other
+
     @cached_property
     def simplices(self) -> Simplices:
         """Cells and their shape-function gradients."""
