@@ -100,4 +100,5 @@ def folded_picture(history: History, summary: dict[str, Any]) -> Figure:
         gi=summary["gi"]["closing"],
         n_gyri=summary["n_gyri"],
         title=title,
+        period=mesh.period,
     )
