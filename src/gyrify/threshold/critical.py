@@ -77,7 +77,7 @@ def critical_growth(
     scanned = scan.scan(values)
     crossings = tuple(
         scan.crossing(below, above, tolerance or TOLERANCE[definition])
-        for below, above in pairwise(scanned)
+        for below, above in pairwise(point for point in scanned if _is_known(point))
         if _is_beyond(below, level) != _is_beyond(above, level)
     )
     main = main_crossing(crossings)
@@ -108,6 +108,10 @@ def _check(definition: str, level: float, tolerance: float | None) -> None:
         raise ConfigError(f"tolerance = {tolerance:g} is out of range (1e-12 to 0.5).", "Try 1e-6.")
 
 
+def _is_known(point: Scanned) -> bool:
+    return point.n_negative is not None or point.gi is not None
+
+
 def _is_beyond(point: Scanned, level: float) -> bool:
     """Whether a point is unstable, or visibly folded."""
     return bool(point.n_negative) if point.gi is None else point.gi > level
@@ -119,6 +123,7 @@ def _ordered(crossings: Sequence[Crossing]) -> tuple[Crossing, ...]:
 
 def _reason(parameter: str, scanned: Sequence[Scanned], level: float, visible: bool) -> str:
     """Why nothing is critical."""
+    scanned = [point for point in scanned if _is_known(point)]
     if len(scanned) < 2:
         return f"Nothing is known: no two points of {parameter} could be computed."
     unit = PARAMETERS[parameter].unit

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 
 import numpy as np
 from scipy.optimize import brentq
@@ -21,6 +22,8 @@ IDEAL = {"mesh.node_jitter": 0.0, "dissipation.kind": "none", "stability.follow_
 
 # An eigenvalue counts as zero below this fraction of those at the neighbouring points of the scan.
 _ZERO = 1e-4
+# The scan ends after so many values in a row without a smooth state.
+_GIVE_UP = 3
 
 
 class StabilityScan:
@@ -51,18 +54,41 @@ class StabilityScan:
     def scan(self, values: Sequence[float]) -> list[Scanned]:
         """Inertia at each value, as far as the smooth branch is found."""
         self._start(values)
-        scanned = []
+        scanned, lost = [], 0
         for value in values:
-            try:
-                state = self._branch.at(value)
-                count = state.tangent(self._system).n_negative
-            except SolveError as lost:
-                self.notes.append(f"{lost.message} The scan ends there.")
+            state = self._state(value)
+            if state is not None:
+                lost = 0
+                scanned.append(Scanned(value, state.tangent(self._system).n_negative))
+                self._note_contact(state)
+                continue
+            lost += 1
+            scanned.append(Scanned(value))
+            if lost == _GIVE_UP:
                 break
-            if state.is_in_contact and not any("Contact" in note for note in self.notes):
-                self.notes.append(f"Contact acts on the smooth branch from {value:.6g} on.")
-            scanned.append(Scanned(value, n_negative=count))
+        missing = [point.value for point in scanned if point.n_negative is None]
+        if missing:
+            end = " The scan ends there." if lost else ""
+            self.notes.append(
+                f"The smooth state is not found between {missing[0]:.6g} and {missing[-1]:.6g}: it ends, or "
+                f"veers into folds without a bifurcation.{end}"
+            )
         return scanned
+
+    def _state(self, value: float) -> SmoothState | None:
+        """Smooth state from its neighbours, or else followed in growth; None where neither finds it."""
+        with suppress(SolveError):
+            return self._branch.at(value)
+        with suppress(SolveError):
+            problem, fraction = self._problem_at(value)
+            u = grown(problem, self._system, fraction, self._watch).u
+            self._branch.known[value] = SmoothState(value, problem, fraction, u)
+            return self._branch.known[value]
+        return None
+
+    def _note_contact(self, state: SmoothState) -> None:
+        if state.is_in_contact and not any("Contact" in note for note in self.notes):
+            self.notes.append(f"Contact acts on the smooth branch from {state.value:.6g} on.")
 
     def crossing(self, below: Scanned, above: Scanned, tolerance: float) -> Crossing:
         """Where the lowest eigenvalue vanishes between two points of the scan."""
@@ -74,13 +100,19 @@ class StabilityScan:
             eigenvalue = self.eigenvalue(value)
             return eigenvalue if abs(eigenvalue) > small else 0.0
 
-        brentq(clipped, below.value, above.value, xtol=tolerance * above.value)
+        refined = True
+        try:
+            brentq(clipped, below.value, above.value, xtol=tolerance * above.value)
+        except SolveError:
+            refined = False
         inside = {v: self._pairs[v] for v in sorted(self._pairs) if below.value <= v <= above.value}
         was_unstable = bool(below.n_negative)
         before = max(v for v, pair in inside.items() if (pair.eigenvalue < 0.0) == was_unstable)
         after = min(v for v, pair in inside.items() if (pair.eigenvalue < 0.0) != was_unstable)
         start, end = inside[before].eigenvalue, inside[after].eigenvalue
-        root = before + (after - before) * start / (start - end)
+        root = before + (after - before) * (start / (start - end) if refined else 0.5)
+        if not refined:
+            self.notes.append(f"The crossing between {before:.6g} and {after:.6g} is not known more closely.")
         nearest = min(inside, key=lambda v: abs(inside[v].eigenvalue))
         state = self._branch.at(nearest)
         mode_number, wavelength = dominant_wave(state.problem.mesh, state.u, inside[nearest].vector)
