@@ -141,6 +141,7 @@ class Pull:
     longest: float = np.inf
     refuses_after: float = np.inf
     shift_mass: np.ndarray | None = None
+    is_path_kept: bool = False
 
     def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:  # noqa: ARG002
         goal, dead = 10.0 * fraction, fraction > self.refuses_after

@@ -85,7 +85,7 @@ def test_free_growth_blocked_along_z_takes_the_best_stretch_in_the_plane(
 @pytest.mark.parametrize("per", ["grown", "reference"])
 @pytest.mark.parametrize("stretch", ["linear", "exponential"])
 def test_fully_constrained_growth_has_its_closed_form(tiny, per: str, stretch: str) -> None:
-    """u = 0: F_e = I / lambda, so W = kappa/2 (lambda^-3 - 1)^2 and no shear; J_g = lambda^3 when per grown."""
+    """u = 0: F_e = I / lambda, so W = kappa/2 (lambda^-3 - 1)^2; times J_g = lambda^3 when per grown."""
     config = tiny.replace(
         **{
             "growth.energy_per": per,
