@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -31,7 +32,8 @@ class Detector:
     """Looks at accepted increments; an add-on that leaves a run with dissipation as it is.
 
     Without dissipation an accepted state is an equilibrium of the tissue itself. An unstable one is left for
-    a stable one (`stability.follow_branch`), or the run ends there with the evidence.
+    a stable one: to the chosen side (`stability.follow_branch`), or else to the side that node jitter pushes
+    to. A perfect slice that is not to be followed ends there with the evidence.
 
     Attributes
     ----------
@@ -98,7 +100,8 @@ class Detector:
         """Stable state that an unstable equilibrium leads to."""
         problem, system = self.problem, self._system_for(after)
         stability = problem.config.stability
-        if not stability.follow_branch:
+        is_perfect = problem.config.mesh.node_jitter == 0.0
+        if is_perfect and not stability.follow_branch:
             eigenvalue = self._tangent(after, before, system).lowest().eigenvalue
             raise self._unstable(after, eigenvalue)
         settled = settle(
@@ -108,11 +111,24 @@ class Detector:
             problem.free_mass,
             self.stepping.criterion,
             problem.candidates,
-            lambda u, mode: stability.sign * outwards(problem, u, mode),
+            self._side(before, after),
             _DEPARTURE * problem.config.geometry.cortical_thickness,
             self.watch,
         )
         return replace(after, u=settled.u, residual=settled.residual, stats=after.stats + settled.stats)
+
+    def _side(self, before: State, after: State) -> Callable[[FloatArray, FloatArray], FloatArray]:
+        """The side to leave to: the chosen one, or else the one to which the imperfection pushes already."""
+        problem, stability = self.problem, self.problem.config.stability
+        if stability.follow_branch:
+            return lambda u, mode: stability.sign * outwards(problem, u, mode)
+        straight = before.u + (before.u - before.u_before) * (after.span / before.span)
+
+        def drifting(u: FloatArray, mode: FloatArray) -> FloatArray:
+            drift = problem.lumped_area @ np.sum(mode * (u - straight), axis=1)
+            return mode if drift >= 0.0 else -mode
+
+        return drifting
 
     def _unstable(self, state: State, eigenvalue: float) -> SolveError:
         time = state.position / self.stepping.end * self.problem.config.growth.duration
@@ -158,7 +174,7 @@ def locate_onset(
     Returns
     -------
     Onset
-        At the end of the increment if a partial increment cannot be solved.
+        The state closest to singular that was found; its bracket is wide if a part could not be solved.
     """
     start, end = (state.position / stepping.end for state in (before, after))
     known: dict[float, tuple[FloatArray, Eigenpair]] = {}
@@ -176,19 +192,18 @@ def locate_onset(
         known[share] = u, pair
         return pair.eigenvalue
 
-    try:
-        root = float(brentq(eigenvalue, 0.0, 1.0, xtol=_ONSET_TOLERANCE))
-    except (SolveError, ValueError):
-        root = 1.0
-        eigenvalue(root)
-    if root not in known:
-        eigenvalue(root)
-    duration = problem.config.growth.duration
-    times = {share: (start + share * (end - start)) * duration for share in known}
-    stable = [times[share] for share, (_, pair) in known.items() if pair.eigenvalue > 0.0]
-    unstable = [times[share] for share, (_, pair) in known.items() if pair.eigenvalue <= 0.0]
-    bracket = max(stable, default=start * duration), min(unstable, default=end * duration)
-    return make_onset(problem, times[root], bracket, *known[root])
+    with suppress(SolveError, ValueError):  # next to a singular state Newton's method may have no answer
+        brentq(eigenvalue, 0.0, 1.0, xtol=_ONSET_TOLERANCE)
+    if 1.0 not in known:
+        eigenvalue(1.0)
+    stable = max((share for share, (_, pair) in known.items() if pair.eigenvalue > 0.0), default=0.0)
+    unstable = min((share for share, (_, pair) in known.items() if pair.eigenvalue <= 0.0), default=1.0)
+    nearest = min(known, key=lambda share: abs(known[share][1].eigenvalue))
+    low, high, at = (
+        (start + share * (end - start)) * problem.config.growth.duration
+        for share in (stable, unstable, nearest)
+    )
+    return make_onset(problem, at, (low, high), *known[nearest])
 
 
 def make_onset(

@@ -79,9 +79,17 @@ def _increments(config: Config) -> str:
 
 
 def _branch(config: Config) -> str:
-    if config.stability.detect or not config.stability.follow_branch:
+    stability, dissipation = config.stability, config.dissipation
+    if not stability.follow_branch:
+        return ""
+    if not stability.detect:
+        return (
+            "stability.follow_branch = true is not allowed with stability.detect = false: a branch must be "
+            "found before it is followed. Try stability.detect = true."
+        )
+    if dissipation.kind == "none" or dissipation.number == 0.0:
         return ""
     return (
-        "stability.follow_branch = true is not allowed with stability.detect = false: a branch must be "
-        "found before it is followed. Try stability.detect = true."
+        f'stability.follow_branch = true is not allowed with dissipation.kind = "{dissipation.kind}": what '
+        'dissipation holds back is no equilibrium to leave. Try dissipation.kind = "none".'
     )

@@ -91,7 +91,11 @@ def settle(
         if departures > 0 and tangent.is_stable:
             return Settled(u, residual, departures, stats)
         mode = oriented(u, tangent.lowest().vector)
-        solution = minimise(total, leave(total, u, mode, size), system, criterion, candidates, watch, mass)
+        try:
+            start = leave(total, u, mode, size)
+        except SolveError:  # next to a singular state one side alone may lead down
+            start = leave(total, u, -mode, size)
+        solution = minimise(total, start, system, criterion, candidates, watch, mass)
         u, residual, stats = solution.u, solution.residual, stats + solution.stats
         if solution.result is not Result.CONVERGED:
             raise _lost(f"the descent from it failed: {solution.result.message}", solution.result.advice)

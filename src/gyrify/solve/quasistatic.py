@@ -10,6 +10,7 @@ import numpy as np
 
 from gyrify.energy.total import TotalEnergy
 from gyrify.errors import SolveError
+from gyrify.solve.equilibrium import find_equilibrium
 from gyrify.solve.newton import Criterion, minimise
 from gyrify.solve.result import Result, Solution, Stats
 from gyrify.solve.system import System
@@ -17,6 +18,8 @@ from gyrify.solve.types import FloatArray, IntArray
 
 # A nominal increment is this many ticks: growth time is an integer, so halving and resuming are exact.
 TICKS: Final = 2**20
+# Newton's method on the residual stays on a branch where it converges at once, or not at all.
+_CONTINUATION_ITERATIONS: Final = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +71,11 @@ class Problem(Protocol):
     @property
     def shift_mass(self) -> FloatArray | None:
         """Diagonal of the mass that indefinite Hessians are shifted by; None to project them."""
+        ...
+
+    @property
+    def is_path_kept(self) -> bool:
+        """Whether to stay on a branch of equilibria where it turns unstable, for `inspect` to see that."""
         ...
 
     def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:
@@ -198,13 +206,37 @@ def _attempt(
     """One increment, from the better of the last state and its extrapolation."""
     start_fraction, fraction = state.position / stepping.end, (state.position + span) / stepping.end
     total = problem.energy(fraction, state, start_fraction)
-    guess = _predict(total, state, span)
-    solution = minimise(
-        total, guess, system, stepping.criterion, problem.candidates, watch, problem.shift_mass
-    )
+    solution = _continued(problem, stepping, total, state, span, system, watch)
+    if solution is None:
+        guess = _predict(total, state, span)
+        solution = minimise(
+            total, guess, system, stepping.criterion, problem.candidates, watch, problem.shift_mass
+        )
     if solution.result is Result.CONVERGED and not problem.is_path_admissible(state.u, solution.u):
         return replace(solution, result=Result.CROSSING_PATH)
     return solution
+
+
+def _continued(
+    problem: Problem,
+    stepping: Stepping,
+    total: TotalEnergy,
+    state: State,
+    span: int,
+    system: System,
+    watch: Callable[[], None],
+) -> Solution | None:
+    """Equilibrium on the extrapolated path, stable or not; None where it is not plainly the same branch."""
+    step = (state.u - state.u_before) * (span / state.span)
+    size = float(np.abs(step).max())
+    if size == 0.0 or not problem.is_path_kept:
+        return None
+    guess = state.u + total.max_step(state.u, step) * step
+    criterion = replace(stepping.criterion, max_iterations=_CONTINUATION_ITERATIONS)
+    solution = find_equilibrium(total, guess, system, criterion, problem.candidates, watch)
+    if solution.result is Result.CONVERGED and float(np.abs(solution.u - guess).max()) <= size:
+        return solution
+    return None
 
 
 def _predict(total: TotalEnergy, state: State, span: int) -> FloatArray:
