@@ -36,7 +36,7 @@ def elastic_kernels(n_dim: int, n_nodes: int) -> ElasticKernels:
 
     @njit(cache=True)
     def accumulate(  # type: ignore[no-untyped-def]
-        u, cells, base, gradients, f33, mu, kappa, weight, order, project_psd, position, gradient, values
+        u, cells, base, gradients, f33, mu, kappa, pressure, weight, order, project_psd, position, gradient, values
     ):
         """Add every cell's energy, forces and matrix; infinite as soon as one cell is inverted."""
         F, H = np.empty((n_dim, n_dim)), np.empty((n_dim, n_dim))
@@ -54,7 +54,7 @@ def elastic_kernels(n_dim: int, n_nodes: int) -> ElasticKernels:
             value += weight[c] * density(I1, J, mu[c], kappa[c])
             if order == 0:
                 continue
-            moduli = coefficients(I1, J, mu[c], kappa[c])
+            moduli = coefficients(I1, J, mu[c], kappa[c], pressure[c])
             for a in range(n_nodes):
                 for i in range(n_dim):
                     f[a, i], h[a, i] = 0.0, 0.0

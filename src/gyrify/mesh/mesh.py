@@ -23,8 +23,9 @@ class Mesh:
     ----------
     points : (n_points, n_dim) float array
         Reference coordinates X [mm].
-    cells : (n_cells, n_dim + 1) int array
-        Point indices of each simplex, positively oriented.
+    cells : (n_cells, n_nodes) int array
+        Point indices of each simplex, positively oriented: corners, then the nodes between them if it is
+        quadratic (in the order of VTK).
     region : (n_cells,) int8 array
         `WHITE` (0) or `GREY` (1).
     contour : (n_contour,) int array
@@ -35,6 +36,8 @@ class Mesh:
         Points whose displacement is zero.
     across : (n_cells, n_dim) float array
         Unit reference direction N across the layers, pointing outwards.
+    patch : (n_cells,) int array
+        Quadrilateral that each cell is a part of.
     is_closed : bool
         Whether the contour is a closed loop (a ring) or runs along one period (a strip).
     period : float or None
@@ -48,6 +51,7 @@ class Mesh:
     interface: IntArray
     clamped: IntArray
     across: FloatArray
+    patch: IntArray
     is_closed: bool = True
     period: float | None = None
 
