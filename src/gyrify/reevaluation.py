@@ -24,8 +24,6 @@ import numpy as np
 
 from gyrify.energy.contact import ContactEnergy
 from gyrify.energy.elastic import ElasticEnergy
-from gyrify.mesh import Mesh
-from gyrify.metrics import min_gap
 from gyrify.model import Slice
 from gyrify.solve.quasistatic import State
 from gyrify.solve.types import FloatArray
@@ -47,8 +45,6 @@ class Increment:
         Change of the energy that was minimised, from the start, over that energy; never positive.
     min_J, min_J_elastic : float
         Smallest J and J_e of its cells [-].
-    gap : float
-        Smallest gap of the contour [mm], 0 if it crosses itself; infinite without contact.
     is_path_free : bool
         Whether the contour crosses itself nowhere on the straight path to here; true without contact.
     elastic, contact : float
@@ -64,7 +60,6 @@ class Increment:
     rise: float
     min_J: float
     min_J_elastic: float
-    gap: float
     is_path_free: bool
     elastic: float
     contact: float
@@ -122,7 +117,6 @@ def _evaluate(
             rise=change["rise"] / scale if scale > 0.0 else 0.0,
             min_J=float(J.min()),
             min_J_elastic=float((J / problem.volume_growth(span[1] * duration)).min()),
-            gap=_gap(problem.mesh, after.u) if problem.config.contact.enabled else math.inf,
             is_path_free=problem.is_path_admissible(before.u, after.u),
             elastic=change["elastic"],
             contact=change["contact"],
@@ -133,17 +127,6 @@ def _evaluate(
         power_after,
         force_after,
     )
-
-
-def _gap(mesh: Mesh, u: FloatArray) -> float:
-    """Smallest gap of the contour [mm]; a periodic one with a period on both sides, closed far below."""
-    contour = mesh.points[mesh.contour] + u[mesh.contour]
-    if mesh.period is None:
-        return min_gap(contour)
-    shift = np.copysign(mesh.period, mesh.points[mesh.contour[1], 0] - mesh.points[mesh.contour[0], 0])
-    line = np.concatenate([np.add(contour, [images * shift, 0.0]) for images in (-1, 0, 1)])
-    below = float(line[:, 1].min()) - mesh.period
-    return min_gap(np.concatenate([line, [[line[-1, 0], below], [line[0, 0], below]]]))
 
 
 def _growth_power(problem: Slice, fraction: float, u: FloatArray) -> float:

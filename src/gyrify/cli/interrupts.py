@@ -111,6 +111,8 @@ class Interrupts:
         if not self._ending.acquire(blocking=False):
             return
         if self._folder is not None and (self._folder / "journal.sqlite").is_file():
+            with contextlib.suppress(OSError):
+                (self._folder / "run.owner.json").unlink()  # an orderly end, if an abrupt one
             said, advice = (
                 "Every accepted increment is stored.",
                 f"Continue with: gyrify resume {self._folder}",

@@ -1,0 +1,145 @@
+"""Exported files, read back."""
+
+from __future__ import annotations
+
+import csv
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from gyrify.errors import ConfigError, HistoryError
+from gyrify.store import History
+from gyrify.store.export import CSV_COLUMNS, export
+from gyrify.store.fields import fields
+
+needs_meshio = pytest.mark.skipif(
+    not __import__("importlib.util").util.find_spec("meshio"), reason="meshio is not installed"
+)
+
+
+def assert_same_fields(found_point: dict, found_cell: dict, history: History, number: int) -> None:
+    for name, values in fields(history, number).items():
+        if name in found_point:
+            expected = np.pad(values, ((0, 0), (0, 1))) if values.ndim == 2 else values
+            np.testing.assert_array_equal(found_point[name], expected, err_msg=name)
+        else:
+            np.testing.assert_array_equal(found_cell[name][0], values.reshape(len(values), -1).squeeze())
+
+
+@needs_meshio
+def test_vtu_of_the_last_state(folded: History, tmp_path: Path):
+    import meshio
+
+    (path,) = export(folded, "vtu", tmp_path / "new" / "last.vtu")
+    mesh = meshio.read(path)
+    assert np.array_equal(mesh.points[:, :2], folded.mesh.points)
+    assert np.array_equal(mesh.cells_dict["triangle"], folded.mesh.cells)
+    assert_same_fields(mesh.point_data, mesh.cell_data, folded, len(folded) - 1)
+
+
+@needs_meshio
+def test_vtu_of_all_states_is_a_collection(folded: History, tmp_path: Path):
+    import meshio
+
+    series, *files = export(folded, "vtu", tmp_path / "run.vtu", None, names=["displacement"])
+    entries = list(ElementTree.parse(series).iter("DataSet"))
+    assert [float(entry.get("timestep", "")) for entry in entries] == folded.growth_times.tolist()
+    assert [entry.get("file") for entry in entries] == [file.name for file in files]
+    assert files[3].name == "run_0003.vtu"
+    found = meshio.read(files[3]).point_data["displacement"]
+    assert np.array_equal(found[:, :2], folded.displacement(3))
+
+
+@needs_meshio
+def test_xdmf_of_all_states_is_read_by_meshio(folded: History, tmp_path: Path, monkeypatch):
+    import meshio
+
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    path, heavy = export(folded, "xdmf", tmp_path / "run.xdmf", None)
+    assert heavy == tmp_path / "run.h5"
+    assert not list(elsewhere.iterdir())
+    with meshio.xdmf.TimeSeriesReader(path) as reader:
+        points, cells = reader.read_points_cells()
+        assert np.array_equal(points[:, :2], folded.mesh.points)
+        assert np.array_equal(cells[0].data, folded.mesh.cells)
+        assert reader.num_steps == len(folded)
+        for number in (0, len(folded) - 1):
+            time, point_data, cell_data = reader.read_data(number)
+            assert time == folded.growth_times[number]
+            assert_same_fields(point_data, cell_data, folded, number)
+
+
+def test_xdmf_is_read_by_vtk(folded: History, tmp_path: Path):
+    reader_of = pytest.importorskip("vtkmodules.vtkIOXdmf2", reason="vtk is not installed").vtkXdmfReader
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+
+    path, _ = export(folded, "xdmf", tmp_path / "run.xdmf", None, names=["displacement", "J"])
+    reader = reader_of()
+    reader.SetFileName(str(path))
+    reader.UpdateInformation()
+    times = reader.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS())
+    assert np.array_equal(times, folded.growth_times)
+    reader.UpdateTimeStep(times[-1])
+    grid = reader.GetOutputDataObject(0)
+    u = vtk_to_numpy(grid.GetPointData().GetArray("displacement"))
+    assert np.allclose(u[:, :2], folded.displacement(), rtol=1e-6)
+    assert np.allclose(vtk_to_numpy(grid.GetCellData().GetArray("J")), fields(folded)["J"], rtol=1e-6)
+
+
+def test_csv_needs_no_library_and_gives_every_digit(folded: History, tmp_path: Path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "meshio", None)
+    (path,) = export(folded, "csv", tmp_path / "last.csv")
+    with path.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert tuple(rows[0]) == CSV_COLUMNS
+    assert {row["increment"] for row in rows} == {str(len(folded) - 1)}
+    u = np.array([[float(row["ux_mm"]), float(row["uy_mm"])] for row in rows])
+    assert np.array_equal(u, folded.displacement())
+    on = sorted((int(row["contour"]), int(row["point"])) for row in rows if row["contour"])
+    assert [point for _, point in on] == folded.mesh.contour.tolist()
+
+
+def test_csv_of_all_states(folded: History, tmp_path: Path):
+    (path,) = export(folded, "csv", tmp_path / "all.csv", None)
+    table = np.genfromtxt(path, delimiter=",", skip_header=1)
+    assert table.shape == (len(folded) * folded.mesh.n_points, len(CSV_COLUMNS))
+    assert np.array_equal(np.unique(table[:, 1]), folded.growth_times)
+
+
+@needs_meshio
+def test_stl_is_the_deformed_slice(folded: History, tmp_path: Path):
+    import meshio
+
+    (path,) = export(folded, "stl", tmp_path / "last.stl")
+    mesh = meshio.read(path)
+    corners = mesh.points[mesh.cells_dict["triangle"]]
+    expected = folded.points()[folded.mesh.cells]
+    assert corners.shape[0] == folded.mesh.n_cells
+    assert np.allclose(corners[:, :, :2], expected, atol=1e-4)
+    assert not corners[:, :, 2].any()
+
+
+def test_a_missing_library_is_named_with_the_command_that_installs_it(folded, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "meshio", None)
+    for format in ("vtu", "stl"):
+        with pytest.raises(ConfigError, match=r"pip install 'gyrify\[export\]'"):
+            export(folded, format, tmp_path / "x")
+
+
+def test_unknown_format_and_state_are_refused(folded: History, tmp_path: Path):
+    with pytest.raises(ConfigError, match="vtu, xdmf, csv, stl"):
+        export(folded, "obj", tmp_path / "x.obj")  # type: ignore[arg-type]
+    with pytest.raises(HistoryError, match="There is no state 999"):
+        export(folded, "csv", tmp_path / "x.csv", 999)
+
+
+def test_a_path_that_cannot_be_written_is_named(folded: History, tmp_path: Path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(HistoryError, match="file"):
+        export(folded, "csv", tmp_path / "file" / "x.csv")
