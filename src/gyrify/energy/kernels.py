@@ -47,7 +47,7 @@ def elastic_kernels(n_dim: int, n_nodes: int) -> ElasticKernels:
             det = invert(F, H)
             if not det > 0.0:
                 return np.inf
-            J, I1 = det * f33[c], f33[c] * f33[c]
+            J, I1 = det * f33[c], f33[c] * f33[c] if n_dim == 2 else 0.0
             for i in range(n_dim):
                 for j in range(n_dim):
                     I1 += F[i, j] * F[i, j]
