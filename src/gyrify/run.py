@@ -108,6 +108,11 @@ class Run:
         except GyrifyError as failure:
             self._record("failed", failure.message, failure.advice)
             raise
+        except MemoryError:
+            self._record(
+                "failed", "Memory ran out.", "Use a smaller mesh, or more memory and `gyrify resume`."
+            )
+            raise
         except Exception as error:
             reason = f"An unexpected {type(error).__name__} ended it: {error}."
             self._record("failed", reason, "Once its cause is removed, continue with `gyrify resume`.")

@@ -19,6 +19,7 @@ from gyrify.cli import run as run_commands
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, USAGE
 from gyrify.cli.early import ignore_interrupts
 from gyrify.cli.streams import complain, print_json
+from gyrify.cli.threshold import threshold
 from gyrify.errors import ConfigError, GyrifyError, HistoryError
 
 app = App(
@@ -31,6 +32,7 @@ app = App(
 )
 app.command(run_commands.run)
 app.command(run_commands.resume)
+app.command(threshold)
 app.command(presets.presets)
 app.command(config.app)
 

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 # Seconds between two updates of the bar: the gyrification index is only computed for what is shown.
 _PAUSE = 0.1
+# Seconds after which a plain line is due even if growth has not come far.
+_PATIENCE = 60.0
 
 
 @contextmanager
@@ -44,15 +46,24 @@ def _describe(progress: Progress) -> str:
     )
 
 
+def _brief(progress: Progress) -> str:
+    """The same in few columns."""
+    duration, state = progress.slice.config.growth.duration, progress.state
+    return (
+        f"time {progress.fraction * duration:.4g}/{duration:g}  GI {_index(progress):.3f}  "
+        f"increment {state.index}  {state.stats.newton_iterations} iterations"
+    )
+
+
 def _plain_lines() -> Callable[[Progress], None]:
-    """A line at each tenth of growth, and at the end."""
-    tenth = -1
+    """A line at each tenth of growth, at the end, and at least every minute."""
+    tenth, said = -1, time.monotonic()
 
     def observe(progress: Progress) -> None:
-        nonlocal tenth
-        reached = int(10.0 * progress.fraction + 1e-9)
-        if reached > tenth:
-            tenth = reached
+        nonlocal tenth, said
+        reached, now = int(10.0 * progress.fraction + 1e-9), time.monotonic()
+        if reached > tenth or now - said > _PATIENCE:
+            tenth, said = reached, now
             complain(f"{_describe(progress)}, about {progress.remaining_s:.0f} s left")
 
     return observe
@@ -64,8 +75,9 @@ def _live_bar() -> Iterator[Callable[[Progress], None]]:
     from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
 
-    columns = (BarColumn(), TaskProgressColumn(), TimeRemainingColumn(), TextColumn("{task.description}"))
-    with Bar(*columns, console=Console(stderr=True)) as bar:
+    left = TimeRemainingColumn(compact=True)
+    columns = (BarColumn(None), TaskProgressColumn(), left, TextColumn("{task.description}"))
+    with Bar(*columns, console=Console(stderr=True), expand=True) as bar:
         task = bar.add_task("growing", total=1.0)
         shown = 0.0
 
@@ -74,6 +86,6 @@ def _live_bar() -> Iterator[Callable[[Progress], None]]:
             now = time.monotonic()
             if now - shown >= _PAUSE or progress.fraction == 1.0:
                 shown = now
-                bar.update(task, completed=progress.fraction, description=_describe(progress))
+                bar.update(task, completed=progress.fraction, description=_brief(progress))
 
         yield observe

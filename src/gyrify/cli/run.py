@@ -117,7 +117,7 @@ def _grow(run: Run, interrupts: Interrupts, quiet: bool) -> None:
     from gyrify.cli.progress import progress_observer
 
     note = _compilation_note(quiet)
-    with suppress(SolveError, KeyboardInterrupt), progress_observer(quiet) as observers:
+    with suppress(SolveError, MemoryError, KeyboardInterrupt), progress_observer(quiet) as observers:
         try:
             run.grow([_silencer(note), *observers], interrupts.watch)
         finally:
