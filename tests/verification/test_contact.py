@@ -86,9 +86,7 @@ def test_every_increment_is_simple(folded: History) -> None:
 
 def test_every_path_between_increments_is_free_of_crossings(folded: History) -> None:
     contours = [folded.contour(k) for k in range(len(folded))]
-    assert [crossings(a, b) for a, b in pairwise(contours)] == [0] * (
-        len(contours) - 1
-    )
+    assert [crossings(a, b) for a, b in pairwise(contours)] == [0] * (len(contours) - 1)
 
 
 def test_without_contact_the_same_run_goes_through_itself(overlapping: History, folded: History) -> None:

@@ -51,7 +51,9 @@ def test_one_and_two_worker_processes_give_the_same_hashes(tiny: Config) -> None
     assert here[0] != here[1]
 
 
-def test_a_resumed_run_equals_one_that_never_stopped(folding: Config, folded: History, tmp_path: Path) -> None:
+def test_a_resumed_run_equals_one_that_never_stopped(
+    folding: Config, folded: History, tmp_path: Path
+) -> None:
     number = 20  # sulci are in contact, couplings are in the pattern, increments have been halved
     assert len(folded.journal.state(number).couplings) > 0
     assert len(folded) > number + 1

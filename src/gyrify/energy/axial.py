@@ -17,7 +17,7 @@ from gyrify.energy.term import Evaluation, FloatArray, Hessian, IntArray
 from gyrify.physics.isotropic import coefficients, energy_density, first_piola, invariants
 
 
-class AxialElasticEnergy:
+class AxialElasticEnergy(ElasticEnergy):
     """Elastic energy of planar cells whose common F33 is a degree of freedom.
 
     Parameters
@@ -41,11 +41,8 @@ class AxialElasticEnergy:
         pattern: CellPattern,
         length: float,
     ) -> None:
-        self.kinematics = kinematics
-        self.mu, self.kappa, self.weight = mu, kappa, weight
-        self.pattern = pattern
+        super().__init__(kinematics, mu, kappa, weight, pattern)
         self.length = length
-        self._plane = ElasticEnergy(kinematics, mu, kappa, weight, pattern)
 
     def evaluate(self, u: FloatArray, order: int, project_psd: bool = False) -> Evaluation:
         """Energy [Pa mm^2], gradient [Pa mm], Hessian [Pa]; see `EnergyTerm`."""
@@ -65,7 +62,7 @@ class AxialElasticEnergy:
 
     def max_step(self, u: FloatArray, du: FloatArray) -> float:
         """Largest fraction of du, at most 1, before a cell is inverted or F33 vanishes."""
-        step, left, change = self._plane.max_step(u, du), self.length + float(u[-1, 0]), float(du[-1, 0])
+        step, left, change = super().max_step(u, du), self.length + float(u[-1, 0]), float(du[-1, 0])
         return min(step, -0.9 * left / change) if change < 0.0 else step
 
     def _hessian(self, F: FloatArray, f33: FloatArray, project_psd: bool) -> Hessian:
@@ -77,8 +74,8 @@ class AxialElasticEnergy:
         slopes = self._slopes()
         matrix = np.swapaxes(slopes, 1, 2) @ (self.weight[:, None, None] * tangent @ slopes)
         rows, cols = np.triu_indices(matrix.shape[1])
-        position, n_entries = self.pattern.position, self.pattern.pattern.rows.size
-        values = np.bincount(position.ravel(), weights=matrix[:, rows, cols].ravel(), minlength=n_entries)
+        values = np.zeros(self.pattern.pattern.rows.size)
+        np.add.at(values, self.pattern.position, matrix[:, rows, cols])
         return Hessian(self.pattern.pattern, values)
 
     def _slopes(self) -> FloatArray:

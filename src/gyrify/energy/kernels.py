@@ -36,7 +36,20 @@ def elastic_kernels(n_dim: int, n_nodes: int) -> ElasticKernels:
 
     @njit(cache=True)
     def accumulate(  # type: ignore[no-untyped-def]
-        u, cells, base, gradients, f33, mu, kappa, pressure, weight, order, project_psd, position, gradient, values
+        u,
+        cells,
+        base,
+        gradients,
+        f33,
+        mu,
+        kappa,
+        pressure,
+        weight,
+        order,
+        project_psd,
+        position,
+        gradient,
+        values,
     ):
         """Add every cell's energy, forces and matrix; infinite as soon as one cell is inverted."""
         F, H = np.empty((n_dim, n_dim)), np.empty((n_dim, n_dim))

@@ -108,8 +108,7 @@ class MeanDilatationEnergy(ElasticEnergy):
         stiffness = (self._patch_kappa / self._patch_weight)[self.patches.patch[self.patches.pairs[:, 0]]]
         first, second = volume[self.patches.pairs[:, 0]], volume[self.patches.pairs[:, 1]]
         products = stiffness[:, None, None] * first[:, :, None] * second[:, None, :]
-        values = np.bincount(
-            self.patches.position, weights=products[self.patches.upper], minlength=self.patches.pattern.rows.size
-        )
+        values = np.zeros(self.patches.pattern.rows.size)
+        np.add.at(values, self.patches.position, products[self.patches.upper])
         values[self.patches.within] += hessian.values
         return Hessian(self.patches.pattern, values)

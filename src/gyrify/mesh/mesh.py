@@ -83,6 +83,18 @@ class Mesh:
         return int(self.cells.shape[0])
 
     @property
+    def triangles(self) -> IntArray:
+        """(n_triangles, 3) straight triangles between all nodes: the cells, or four for each quadratic one."""
+        if self.cells.shape[1] == 3:
+            return self.cells
+        return self.cells[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
+
+    @property
+    def triangle_region(self) -> NDArray[np.int8]:
+        """(n_triangles,) tissue of each of the `triangles`."""
+        return np.repeat(self.region, self.triangles.shape[0] // self.n_cells)
+
+    @property
     def cell_points(self) -> FloatArray:
         """(n_cells, n_nodes, n_dim) reference coordinates of each cell, unwrapped across the period."""
         corners = self.points[self.cells]
