@@ -9,11 +9,16 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import io
 import tempfile
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
+
+import bad_runs
+from bad_runs import RUN
 
 from gyrify.cli import main
 
@@ -41,6 +46,8 @@ class Case:
         The exit code it must get.
     prepare : callable, optional
         Sets the scene in the working folder, which is given as its argument.
+    scene : callable, optional
+        The same for a scene that must be cleared away.
     shown : str
         What the page shows instead of the file and the arguments.
     foreign : bool
@@ -54,6 +61,7 @@ class Case:
     args: tuple[str, ...] = CHECK
     exit_code: int = 2
     prepare: Callable[[Path], object] | None = None
+    scene: Callable[[Path], AbstractContextManager[None]] = contextlib.nullcontext
     shown: str = ""
     foreign: bool = False
 
@@ -77,6 +85,7 @@ def provoke(case: Case, folder: Path) -> tuple[int, str]:
     stderr = io.StringIO()
     with (
         contextlib.chdir(folder),
+        case.scene(folder),
         contextlib.redirect_stderr(stderr),
         contextlib.redirect_stdout(io.StringIO()),
     ):
@@ -148,6 +157,24 @@ COMMAND_LINE = [
     Case("option", "an unknown option", ("--growth-ratoi", "--help"), args=(*CHECK, "--growth-ratoi", "2"), foreign=True),
     Case("command", "an unknown command", ('Did you mean "check"?',), args=("config", "chekc"), foreign=True),
 ]  # fmt: skip
+STORED = [
+    Case("holds-run", "an output folder that holds a run", ("run already holds a run", "--overwrite", "gyrify resume run"), args=(*RUN, "run"), prepare=bad_runs.stored, shown="`gyrify run --out run`"),
+    Case("out-file", "an output folder that is a file", ("notes.txt is a file", "--out"), args=(*RUN, "notes.txt"), prepare=bad_runs.file_in_the_way, shown="`gyrify run --out notes.txt`"),
+    Case("out-under-file", "an output folder under a file", ("notes.txt is a file", "--out"), args=(*RUN, "notes.txt/run"), prepare=bad_runs.file_in_the_way, shown="`gyrify run --out notes.txt/run`"),
+    Case("read-only", "an output folder that is read-only", ("locked/run cannot be written: Permission denied", "--out"), args=(*RUN, "locked/run"), scene=bad_runs.read_only, shown="`gyrify run --out locked/run`"),
+    Case("in-use", "an output folder that another process works in", ("in use by process 4242 on node-7", "Wait"), args=(*RUN, "run", "--overwrite"), scene=bad_runs.in_use, shown="`gyrify run --out run --overwrite`"),
+    Case("full-disk", "a disk that is full before the run is done: what was accepted is kept", ("run/journal.sqlite", "space", "gyrify resume"), args=(*RUN, "run"), exit_code=1, scene=functools.partial(bad_runs.full_disk, room=60_000), shown="`gyrify run --out run`", foreign=True),
+    Case("full-disk-outputs", "a disk that is full before the outputs are written: the run is kept", ("outputs in run", "Free space", "gyrify resume run"), args=("resume", "run"), exit_code=1, prepare=bad_runs.stored, scene=functools.partial(bad_runs.full_disk, room=90_000), shown="`gyrify resume run`", foreign=True),
+    Case("no-folder", "a run folder that does not exist", ("There is no run in absent", "gyrify run"), args=("resume", "absent")),
+    Case("resume-other", "another value for a stored run", ("keeps its configuration", "limits and output", "another run"), args=("resume", "run", "--set", "growth.ratio=2"), prepare=bad_runs.stored),
+    Case("version", "a history of another version", ("journal format 99", "reads format 1", "versions"), args=("resume", "run"), prepare=bad_runs.other_version, shown="`gyrify resume run`"),
+    Case("other-program", "a database of another program", ("not a gyrify journal",), args=("resume", "run"), prepare=bad_runs.other_program),
+    Case("not-a-database", "a journal that is something else", ("damaged", "from a copy", "--overwrite"), args=("resume", "run"), prepare=bad_runs.overwritten, foreign=True),
+    Case("empty", "a journal that is empty", ("journal.sqlite is empty", "--overwrite"), args=("resume", "run"), prepare=bad_runs.emptied),
+    Case("half", "a journal that is cut off", ("damaged", "from a copy", "--overwrite"), args=("resume", "run"), prepare=bad_runs.truncated, foreign=True),
+    Case("flipped-state", "a journal with a flipped bit in a state", ("Increment 5", "checksum"), args=("resume", "run"), prepare=bad_runs.flip_state),
+    Case("flipped-config", "a journal with a flipped bit in its configuration", ("configuration", "checksum"), args=("resume", "run"), prepare=bad_runs.flip_config),
+]  # fmt: skip
 
 GROUPS: dict[str, list[Case]] = {
     "Values out of range or of the wrong type": VALUES,
@@ -155,6 +182,7 @@ GROUPS: dict[str, list[Case]] = {
     "Keys": KEYS,
     "Configuration files": FILES,
     "Presets and the command line": COMMAND_LINE,
+    "Run folders, disks and stored runs": STORED,
 }
 CASES = [case for cases in GROUPS.values() for case in cases]
 
@@ -164,7 +192,7 @@ INTRODUCTION = """\
 <!-- Written by `python tests/bad_input.py`, which provokes every message; do not edit. -->
 
 Every input below ends with one message on stderr and exit code 2 (a usage or configuration error) unless the
-table says otherwise; nothing is run or written.
+table says otherwise; nothing is run or written, and what a folder held before is still there.
 """
 
 

@@ -13,12 +13,12 @@ from gyrify.config import Config
 from gyrify.simulation import simulate
 from gyrify.store import History
 
-# A slice that is cheap and still folds until its sulci close: 22 increments, two of them halves.
+# A slice that is cheap and still folds until its sulci close; some of its increments are halved.
 FOLDING = {
     "mesh.n_around": 168,
     "mesh.n_layers": 8,
     "mesh.n_cortex_layers": 4,
-    "growth.duration": 600.0,
+    "growth.duration": 650.0,
     "solver.increments": 20,
 }
 # A slice for runs that only have to run.

@@ -14,6 +14,11 @@ sys.path.insert(0, str(HERE.parents[1] / "tests" / "verification"))
 
 from strip_onset import StripMesh, onset, theory  # noqa: E402
 
+from gyrify import Config, simulate  # noqa: E402
+from gyrify.outputs import folded_picture  # noqa: E402
+from gyrify.report import save_figure  # noqa: E402
+from gyrify.summary import summarise  # noqa: E402
+
 RATIOS = {"1/1.36": 1 / 1.36, "1": 1.0, "1.54": 1.54, "2": 2.0, "3": 3.0}
 NAMES = {"isotropic": "isotropic growth, z blocked", "uniaxial": "growth in x only"}
 REFINEMENTS = (1 / 3, 0.5, 2 / 3, 1.0, 1.5, 2.0)
@@ -97,7 +102,14 @@ def draw(found: dict[tuple[str, str], list[float]]) -> Figure:
     return figure
 
 
+def fold() -> None:
+    """Fold a strip with a cortex three times as stiff as white matter, and draw it."""
+    history = simulate(Config(geometry={"shape": "strip"}, material={"stiffness_ratio": 3.0}))
+    save_figure(folded_picture(history, summarise(history)), HERE / "strip-folded.png", dpi=150)
+
+
 if __name__ == "__main__":
+    fold()
     values = results()
     print_table(values)
     draw(values).savefig(HERE / "strip-onset.png", dpi=130, metadata={"Software": None})

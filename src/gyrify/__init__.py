@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from gyrify.simulation import Progress, resume, simulate
     from gyrify.store import History
     from gyrify.summary import measure_state, summarise
+    from gyrify.threshold import Threshold, critical_growth
 
 __version__ = "0.1.0"
 
@@ -51,7 +52,9 @@ _HOMES = {
     "MeshError": "errors",
     "Progress": "simulation",
     "SolveError": "errors",
+    "Threshold": "threshold",
     "cortical_thickness": "metrics",
+    "critical_growth": "threshold",
     "growth_ratio_from_scaling": "metrics",
     "growth_ratio_from_volumes": "metrics",
     "gyrification_index": "metrics",
@@ -77,8 +80,10 @@ __all__ = [
     "MeshError",
     "Progress",
     "SolveError",
+    "Threshold",
     "__version__",
     "cortical_thickness",
+    "critical_growth",
     "growth_ratio_from_scaling",
     "growth_ratio_from_volumes",
     "gyrification_index",

@@ -70,8 +70,14 @@ class Slice(Tissue):
 
     @property
     def shift_mass(self) -> FloatArray | None:
-        """See `gyrify.solve.quasistatic.Problem`: the mass, where nothing dissipates."""
-        return self.free_mass if self.is_conservative else None
+        """See `gyrify.solve.quasistatic.Problem`: the mass, unless a projection is asked for."""
+        return self.free_mass if self.config.solver.regularisation == "shift" else None
+
+    @property
+    def is_path_kept(self) -> bool:
+        """See `gyrify.solve.quasistatic.Problem`: a bifurcation is to be seen, and nothing unfolds it."""
+        stability, is_perfect = self.config.stability, self.config.mesh.node_jitter == 0.0
+        return self.is_conservative and stability.detect and (stability.follow_branch or is_perfect)
 
     @property
     def barrier_stiffness(self) -> float:

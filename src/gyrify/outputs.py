@@ -13,11 +13,12 @@ from gyrify.errors import HistoryError
 from gyrify.report.figures import folded_figure, save_figure
 from gyrify.store.faults import storage_faults
 from gyrify.store.history import History
+from gyrify.store.vtkhdf import write_vtkhdf
 from gyrify.summary import summarise, write_metrics, write_summary
 
 
 def write_outputs(history: History, folder: Path) -> dict[str, Any]:
-    """Write ``summary.json``, ``metrics.csv`` and ``folded.png``, each by atomic rename.
+    """Write ``summary.json``, ``metrics.csv``, ``folded.png`` and ``history.vtkhdf``, each by atomic rename.
 
     Parameters
     ----------
@@ -40,6 +41,7 @@ def write_outputs(history: History, folder: Path) -> dict[str, Any]:
     with _whole_files(folder):
         write_metrics(history, folder / "metrics.csv")
         save_figure(folded_picture(history, summary), folder / "folded.png")
+        write_vtkhdf(history, folder / "history.vtkhdf")
     return summary
 
 
@@ -100,4 +102,5 @@ def folded_picture(history: History, summary: dict[str, Any]) -> Figure:
         gi=summary["gi"]["closing"],
         n_gyri=summary["n_gyri"],
         title=title,
+        period=mesh.period,
     )

@@ -98,8 +98,9 @@ def summarise(history: History) -> dict[str, Any]:
             "min_J": min_J,
             "min_J_elastic": min_J_elastic,
             "nodes_per_wavelength": n_contour / measures.n_gyri if measures.n_gyri else None,
-            "onset": None,
+            "onset": _onset(history),
             "stable": history.stable,
+            "stability_note": _stability_note(history, measures.n_gyri),
             "solver": {
                 "increments": len(history) - 1,
                 "newton_iterations": stats.newton_iterations,
@@ -117,6 +118,38 @@ def summarise(history: History) -> dict[str, Any]:
     )
 
 
+def _onset(history: History) -> dict[str, Any] | None:
+    onset = history.onset
+    if onset is None:
+        return None
+    return {
+        "growth_time": onset.growth_time,
+        "mode_number": onset.mode_number,
+        "wavelength_mm": onset.wavelength,
+        "eigenvalue": onset.eigenvalue,
+    }
+
+
+def _stability_note(history: History, n_gyri: int) -> str:
+    """What a reader of ``onset`` and ``stable`` should know."""
+    conservative = history.slice.is_conservative
+    if history.stable is False and conservative:
+        return (
+            "The final state is an unstable equilibrium: an arbitrarily small disturbance leaves it. "
+            "Set stability.follow_branch = true."
+        )
+    if history.onset is None and not history.config.stability.detect:
+        return "The loss of stability was not looked for (stability.detect = false)."
+    if history.onset is None and n_gyri > 0:
+        return (
+            "The slice folded without a loss of stability at any increment: node jitter unfolds the "
+            "bifurcation. `gyrify threshold` locates it on the smooth branch."
+        )
+    if history.onset is not None and not conservative:
+        return "With dissipation, onset is where the stiffness of the tissue itself becomes indefinite."
+    return ""
+
+
 def warnings(summary: dict[str, Any]) -> list[str]:
     """Sentences on what a reader of the summary should not overlook."""
     found = []
@@ -128,6 +161,9 @@ def warnings(summary: dict[str, Any]) -> list[str]:
         )
     if summary["self_intersecting"]:
         found.append("The contour crosses itself: the state is not physical. Set contact.enabled = true.")
+    note = summary["stability_note"]
+    if "without a loss of stability" in note or "unstable equilibrium" in note:
+        found.append(note)
     return found
 
 

@@ -19,7 +19,7 @@ from gyrify.config.schema import json_schema
 from gyrify.config.table import rows
 from gyrify.errors import ConfigError
 
-REFERENCE_HASH = "c3e63ef4d84a0467d8958d36d3870265659e430e5af53e618cb74467bcfe0d9f"
+REFERENCE_HASH = "70e224fd81e3cc74d9599037b3e4cc1a74211c6ad31661f2af824bd0ccfb02e9"
 
 
 def floats(low: float, high: float) -> st.SearchStrategy[float]:
@@ -171,6 +171,7 @@ def changed(value: Any, key: str) -> Any:
         "growth.law": "tangential",
         "contact.barrier_stiffness": 5.0,
         "dissipation.kind": "none",
+        "solver.regularisation": "projection",
         "solver.linear_solver": "superlu",
         "output.fields": ["J"],
         "stability.sign": -1,

@@ -12,8 +12,9 @@ import pytest
 from gyrify.errors import HistoryError
 from gyrify.store import History
 from gyrify.store import vtkhdf as module
+from gyrify.store.chunks import Layout, encoded
 from gyrify.store.fields import POINT_FIELDS, fields
-from gyrify.store.vtkhdf import Layout, _encoded, write_vtkhdf, written_states
+from gyrify.store.vtkhdf import write_vtkhdf, written_states
 
 # Relative error of rounding to single precision, then to 16 significant bits.
 ROUNDED = 2.0**-16 + 2.0**-24
@@ -123,7 +124,7 @@ def test_first_and_last_state_are_always_written(n_states, every, expected):
 )
 def test_chunks_are_what_zlib_and_shuffle_make_of_the_numbers(n, layout, rng):
     values = 1e3 * rng.standard_normal(n)
-    shuffled = np.frombuffer(zlib.decompress(_encoded(values, layout)), np.uint8).reshape(4, n)
+    shuffled = np.frombuffer(zlib.decompress(encoded(values, layout)), np.uint8).reshape(4, n)
     found = np.ascontiguousarray(shuffled.T).view("<f4").ravel()
     if layout.rounded:
         np.testing.assert_allclose(found, values, rtol=ROUNDED)
@@ -134,7 +135,7 @@ def test_chunks_are_what_zlib_and_shuffle_make_of_the_numbers(n, layout, rng):
 
 def test_rounding_leaves_what_is_not_a_number_and_carries_to_the_next_power_of_two():
     values = np.array([np.inf, -np.inf, 0.0, np.nextafter(2.0, 0.0), -1.0])
-    shuffled = np.frombuffer(zlib.decompress(_encoded(values, Layout())), np.uint8).reshape(4, -1)
+    shuffled = np.frombuffer(zlib.decompress(encoded(values, Layout())), np.uint8).reshape(4, -1)
     found = np.ascontiguousarray(shuffled.T).view("<f4").ravel()
     assert found.tolist() == [np.inf, -np.inf, 0.0, 2.0, -1.0]
 

@@ -18,6 +18,7 @@ from gyrify.cli import config, presets
 from gyrify.cli import run as run_commands
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, USAGE
 from gyrify.cli.early import ignore_interrupts
+from gyrify.cli.stored import export, verify
 from gyrify.cli.streams import complain, print_json
 from gyrify.cli.threshold import threshold
 from gyrify.errors import ConfigError, GyrifyError, HistoryError
@@ -32,7 +33,9 @@ app = App(
 )
 app.command(run_commands.run)
 app.command(run_commands.resume)
+app.command(verify)
 app.command(threshold)
+app.command(export)
 app.command(presets.presets)
 app.command(config.app)
 

@@ -34,7 +34,7 @@ def progress_observer(quiet: bool) -> Iterator[list[Observer]]:
 
 def _index(progress: Progress) -> float:
     mesh = progress.slice.mesh
-    contour = (mesh.points + progress.state.u)[mesh.contour]
+    contour = mesh.points[mesh.contour] + progress.state.u[mesh.contour]
     return gyrification_index(contour, closing_radius=progress.slice.config.metrics.closing_radius)
 
 

@@ -50,6 +50,10 @@ class Solver(Section):
     max_newton: int = setting(
         60, "Newton iterations per increment; reaching it is a failure, never acceptance.", ge=1, le=10_000
     )
+    regularisation: Literal["shift", "projection"] = setting(
+        "shift",
+        "Where the stiffness is indefinite: shift it by the mass, or project it cell by cell (slower).",
+    )
     linear_solver: Literal["auto", "pardiso", "superlu"] = setting(
         "auto", "Sparse direct solver; auto takes PARDISO where it is installed."
     )

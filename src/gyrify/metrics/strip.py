@@ -13,7 +13,14 @@ import math
 import numpy as np
 import shapely
 
-from gyrify.metrics.contour import BLOCK, FloatArray, filled, offset_outline, require_positive
+from gyrify.metrics.contour import (
+    BLOCK,
+    QUARTER_SEGMENTS,
+    FloatArray,
+    filled,
+    offset_outline,
+    require_positive,
+)
 from gyrify.metrics.folds import Folds, depth_below, periodic_extrema
 from gyrify.metrics.gap import DETOUR
 from gyrify.metrics.gyrification import closing_length, exposed_length
@@ -38,8 +45,7 @@ def measure_strip(
     `gyrify.metrics.min_gap`, images included; a contour without folds has none, and it is infinite.
     """
     require_positive("period", period)
-    lowest = int(np.argmin(contour[:, 1]))
-    line = np.concatenate([contour[lowest:], contour[:lowest] + np.array([period, 0.0])])
+    line = _from_lowest(contour, period)
     crossing = not shapely.linestrings(_repeated(line, period, range(-1, 3))).is_simple
     length = float(_arc(line, period)[-1])
     closing, exposed, offset = _exposed_lengths(line, period, closing_radius)
@@ -85,6 +91,40 @@ def _folds(line: FloatArray, period: float, prominence: float, samples: int) -> 
     return Folds(points, above, *periodic_extrema(above, prominence))
 
 
+def strip_closing_outline(contour: FloatArray, period: float, closing_radius: float) -> list[FloatArray]:
+    """Outline of the closing along one period and a little more on both sides, in pieces, to draw it.
+
+    Parameters
+    ----------
+    contour : (n, 2) float array
+        One period of the contour towards +x [mm].
+    period : float
+        Period in x [mm], > 0.
+    closing_radius : float
+        Radius of the closing [mm], > 0.
+
+    Returns
+    -------
+    list of (m, 2) float arrays
+        Vertices of each piece [mm].
+    """
+    line = _from_lowest(contour, period)
+    body = _body(line, period, _count(line, period, closing_radius) + 4, closing_radius)
+    closed = offset_outline(body, closing_radius)
+    outline = shapely.Polygon(closed).buffer(-closing_radius, quad_segs=QUARTER_SEGMENTS).exterior
+    margin, left = 0.1 * period, float(contour[0, 0])
+    below, above = float(line[0, 1]) - closing_radius, float(line[:, 1].max()) + closing_radius
+    piece = shapely.clip_by_rect(outline, left - margin, below, left + period + margin, above)
+    merged = shapely.line_merge(piece) if piece.geom_type == "MultiLineString" else piece
+    return [shapely.get_coordinates(part) for part in shapely.get_parts(merged)]
+
+
+def _from_lowest(contour: FloatArray, period: float) -> FloatArray:
+    """Return the period that starts at the deepest vertex."""
+    lowest = int(np.argmin(contour[:, 1]))
+    return np.concatenate([contour[lowest:], contour[:lowest] + np.array([period, 0.0])])
+
+
 def _exposed_lengths(
     line: FloatArray, period: float, radius: float
 ) -> tuple[float, float, shapely.LinearRing]:
@@ -92,14 +132,18 @@ def _exposed_lengths(
 
     The period from ``line[0]``, the deepest vertex, lies in the middle of the body whose outline is returned.
     """
-    overhang = float(np.ptp(line[:, 0])) - period
-    # So many that a disc, wherever it lies, feels at most one of the ends.
-    n = 1 + math.ceil((4 * radius + 2 * max(overhang, 0.0)) / period)
+    n = _count(line, period, radius)
     bodies = [_body(line, period, count, radius) for count in (n, n + 1)]
     offsets = [offset_outline(body, radius) for body in bodies]
     closing = closing_length(offsets[1], radius) - closing_length(offsets[0], radius) - period
     exposed = exposed_length(bodies[1], radius) - exposed_length(bodies[0], radius) - period
     return closing, exposed, offsets[1]
+
+
+def _count(line: FloatArray, period: float, radius: float) -> int:
+    """Return so many periods that a disc, wherever it lies, feels at most one of the ends."""
+    overhang = float(np.ptp(line[:, 0])) - period
+    return 1 + math.ceil((4 * radius + 2 * max(overhang, 0.0)) / period)
 
 
 def _body(line: FloatArray, period: float, count: int, radius: float) -> shapely.Polygon:

@@ -19,7 +19,7 @@ from matplotlib.path import Path as Outline
 from numpy.typing import ArrayLike, NDArray
 
 from gyrify.mesh import GREY, WHITE
-from gyrify.metrics import closing_outline
+from gyrify.report.sheet import closed_sheet, periodic_sheet
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -51,6 +51,7 @@ def folded_figure(
     n_gyri: int | None = None,
     title: str = "",
     width_mm: float = 90.0,
+    period: float | None = None,
 ) -> Figure:
     """Draw a folded slice: tissues, contour, exposed outline, scale bar and gyrification index.
 
@@ -63,7 +64,8 @@ def folded_figure(
     region : (n_cells,) int array_like
         `gyrify.mesh.WHITE` or `gyrify.mesh.GREY`.
     contour, interface : (n,) int array_like
-        Point indices of the closed outer contour and of the closed grey-white interface, in order.
+        Point indices of the outer contour and of the grey-white interface, in order: closed, or one period
+        towards +x.
     closing_radius : float
         Radius of the closing whose outline is drawn as the exposed one [mm], > 0.
     gi, n_gyri : float and int, optional
@@ -72,6 +74,8 @@ def folded_figure(
         Written above the picture, wrapped to its width.
     width_mm : float
         Width of the figure [mm]; 90 is one column of most journals.
+    period : float, optional
+        Period in x [mm] of a strip, of which one is drawn.
 
     Returns
     -------
@@ -86,17 +90,20 @@ def folded_figure(
     x = np.asarray(points, dtype=np.float64)
     triangles, tissue = np.asarray(cells, dtype=np.int64), np.asarray(region, dtype=np.int64)
     outer, inner = np.asarray(contour, dtype=np.int64), np.asarray(interface, dtype=np.int64)
-    exposed = closing_outline(x[outer], closing_radius)
-    low, high = exposed.min(axis=0), exposed.max(axis=0)
+    slice_arrays = (x, triangles, tissue, outer, inner, closing_radius)
+    sheet = closed_sheet(*slice_arrays) if period is None else periodic_sheet(*slice_arrays, period)
     header = _header(title, _index_text(gi, n_gyri, closing_radius), width_mm)
-    figure, axes = _page(low, high, width_mm, header_mm=2.8 + LINE_MM * len(header))
-    _draw_tissues(axes, x, triangles, tissue)
+    figure, axes = _page(sheet.low, sheet.high, width_mm, header_mm=2.8 + LINE_MM * len(header))
+    _draw_tissues(axes, sheet.points, sheet.cells, sheet.region)
     # Below the contour, so that the outline shows where it leaves the tissue.
-    axes.add_line(_loop(exposed, **OUTLINE))
-    for line in (*_holes(triangles, outer), inner, outer):
-        axes.add_line(_loop(x[line], color=COLOURS["line"], linewidth=0.9 if line is outer else 0.4))
+    for piece in sheet.exposed:
+        axes.add_line(_line(piece, **OUTLINE))
+    clamped = [sheet.floor] if sheet.is_periodic else [x[[*h, h[0]]] for h in _holes(triangles, outer)]
+    for line in (*clamped, sheet.interface):
+        axes.add_line(_line(line, color=COLOURS["line"], linewidth=0.4))
+    axes.add_line(_line(sheet.contour, color=COLOURS["line"], linewidth=0.9))
     _write_header(figure, header)
-    _scale_bar(figure, low, high)
+    _scale_bar(figure, sheet.low, sheet.high)
     _legend(figure)
     return figure
 
@@ -179,10 +186,9 @@ def _holes(cells: IntArray, contour: IntArray) -> list[IntArray]:
     return [loop for loop in _boundary_loops(cells) if not np.isin(loop[0], contour)]
 
 
-def _loop(line: FloatArray, **style: Any) -> Line2D:
-    """Return a closed line."""
-    ring = np.concatenate([line, line[:1]])
-    return Line2D(ring[:, 0], ring[:, 1], solid_joinstyle="round", **style)
+def _line(line: FloatArray, **style: Any) -> Line2D:
+    """Return a line through vertices."""
+    return Line2D(line[:, 0], line[:, 1], solid_joinstyle="round", **style)
 
 
 def _index_text(gi: float | None, n_gyri: int | None, closing_radius: float) -> str:

@@ -7,6 +7,7 @@ one, so that the three phases are called here.
 from __future__ import annotations
 
 import ctypes
+import sys
 from functools import lru_cache
 from typing import Any
 
@@ -98,7 +99,7 @@ class Pardiso:
             self._handle[:] = 0
 
     def __del__(self) -> None:
-        if getattr(self, "_n", 0) > 0:
+        if getattr(self, "_n", 0) > 0 and not sys.is_finalizing():
             self._release()
 
 

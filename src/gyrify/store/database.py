@@ -48,12 +48,13 @@ def translated(name: str) -> Iterator[None]:
     """Turn database faults into one sentence with advice."""
     try:
         yield
-    except (sqlite3.Error, sqlite3.Warning) as error:
+    except (sqlite3.Error, sqlite3.Warning, UnicodeDecodeError) as error:
         text = str(error)
         what = f"The journal {name} could not be used: {text}."
         if "full" in text:
             advice = "Free space on the disk, then continue with `gyrify resume`."
         elif "I/O" in text:
+            what = f"The journal {name} could not be written: {text}."
             advice = "Look at the space, quota and health of the disk, then continue with `gyrify resume`."
         elif "readonly" in text or "unable to open" in text:
             advice = "Choose a folder that you may write to."

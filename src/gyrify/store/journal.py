@@ -145,7 +145,7 @@ class Journal:
             meta = dict(
                 self._connection.execute("SELECT key, value FROM meta WHERE key IN ('config', 'seal')")
             )
-        if "seal" in meta and _sealed({"config": meta.get("config", "")})["seal"] != meta["seal"]:
+        if "seal" in meta and _sealed({"config": str(meta.get("config"))})["seal"] != meta["seal"]:
             raise HistoryError(f"The configuration in {self.name} is damaged: its checksum differs.", RERUN)
         for number in range(len(self)):
             self._row(number)
@@ -251,7 +251,8 @@ class Journal:
             raise HistoryError(
                 f"The journal {self.name} has no increment {number}.", f"It holds {len(self)}."
             )
-        if _digest(row[:9], row[10], row[11]) != row[12]:
+        is_bytes = isinstance(row[10], bytes) and isinstance(row[11], bytes)
+        if not is_bytes or _digest(row[:9], row[10], row[11]) != row[12]:
             raise HistoryError(f"Increment {number} in {self.name} is damaged: its checksum differs.", RERUN)
         return row
 

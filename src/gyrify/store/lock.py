@@ -35,14 +35,14 @@ def run_lock(folder: Path) -> Iterator[str]:
     """
     owner = folder / OWNER
     lock = FileLock(folder / "run.lock")
-    try:
-        with storage_faults(folder):
+    with storage_faults(folder):
+        try:
             lock.acquire(timeout=0)
-    except Timeout as held:
-        raise HistoryError(
-            f"The run folder {folder} is in use by {_describe(owner)}.",
-            "Wait for that process, stop it, or choose another folder with --out.",
-        ) from held
+        except Timeout as held:
+            raise HistoryError(
+                f"The run folder {folder} is in use by {_describe(owner)}.",
+                "Wait for that process, stop it, or choose another folder with --out.",
+            ) from held
     try:
         stale = (
             f"{_describe(owner)} ended without closing this run; it is taken over." if owner.exists() else ""

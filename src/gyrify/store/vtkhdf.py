@@ -1,24 +1,22 @@
 """The derived history ``history.vtkhdf``: one unstructured grid, static in the reference state, with steps.
 
 The file follows the VTKHDF format (version 2) and is plain HDF5: 32-bit floats behind HDF5's own shuffle and
-deflate filters. To be small and quick to write, it uses what these allow:
+deflate filters. To be small and quick to write, it uses what these allow (see also `gyrify.store.chunks`):
 
 - a vector or tensor is chunked by component, and components that are always zero in the plane are never
   written (HDF5 reads them as zero);
-- of a value's four bytes only the sign and exponent byte is worth compressing; the mantissa is passed through
-  in stored (uncompressed) blocks of the same deflate stream;
-- the fields of cells are rounded to 16 significant bits (relative error at most 2^-16 = 1.5e-5), so that
-  their last byte vanishes; displacements and growth keep all 24 bits. The full precision is in the journal;
+- the fields of cells are rounded to 16 significant bits (relative error at most 2^-16 = 1.5e-5);
+  displacements and growth keep all 24 bits. The full precision is in the journal;
+- fields of the contour are NaN (forces: zero) elsewhere; where its points follow each other in the mesh, they
+  make a chunk of their own, and the other chunks are not written;
 - what does not change from step to step is written once, and every step points at it.
 """
 
 from __future__ import annotations
 
 import os
-import zlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
@@ -27,48 +25,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gyrify.config.run_sections import OutputField
+from gyrify.mesh import Mesh
 from gyrify.solve.types import FloatArray
+from gyrify.store.chunks import Layout, encoded
 from gyrify.store.faults import storage_faults
-from gyrify.store.fields import POINT_FIELDS, STATIC_FIELDS, UNITS, FieldMaker, StateFields
+from gyrify.store.fields import CONTOUR_FIELDS, POINT_FIELDS, STATIC_FIELDS, UNITS, FieldMaker, StateFields
 from gyrify.store.history import History
 
 FORMAT_VERSION: Final = (2, 2)
 # VTK's numbers of triangles with three and six nodes.
 _TRIANGLES: Final = {3: 5, 6: 22}
-# Longest stored block of a deflate stream.
-_LONGEST_BLOCK: Final = 65535
-
-
-@dataclass(frozen=True)
-class Layout:
-    """How the values of a field lie in the file.
-
-    Attributes
-    ----------
-    n_components : int
-        Components in the file; those not in ``written`` are zero.
-    written : tuple of int
-        Components that are written.
-    stored : tuple of int
-        Bytes of a value, from the lowest, that are passed through uncompressed.
-    rounded : bool
-        Whether values are rounded to 16 significant bits.
-    """
-
-    n_components: int = 1
-    written: tuple[int, ...] = (0,)
-    stored: tuple[int, ...] = (1, 2)
-    rounded: bool = True
-
 
 _COMPRESSED: Final = Layout(stored=(), rounded=False)
+_ON_CONTOUR: Final = Layout(stored=(), rounded=False, elsewhere=np.nan)
 _LAYOUTS: Final[dict[OutputField, Layout]] = {
     "displacement": Layout(3, (0, 1), stored=(0, 1, 2), rounded=False),
     "growth_stretch": _COMPRESSED,
     "J_growth": _COMPRESSED,
     "cauchy_stress": Layout(6, (0, 1, 2, 3)),
-    "thickness": _COMPRESSED,
-    "curvature": _COMPRESSED,
+    "thickness": _ON_CONTOUR,
+    "curvature": _ON_CONTOUR,
     "contact_force": Layout(3, (0, 1), stored=(), rounded=False),
 }
 
@@ -158,34 +134,78 @@ def _write_fields(
     root: h5py.Group, history: History, steps: list[int], names: tuple[OutputField, ...]
 ) -> None:
     """Every field at every step; static ones once."""
-    mesh, chunks = history.mesh, {}
+    targets = {}
     for name in names:
         place = "Point" if name in POINT_FIELDS else "Cell"
+        data, mesh = root.require_group(f"{place}Data"), history.mesh
         n_values = mesh.n_points if place == "Point" else mesh.n_cells
-        is_static = name in STATIC_FIELDS
-        starts = np.zeros(len(steps), dtype=np.int64) if is_static else np.arange(len(steps)) * n_values
-        root[f"Steps/{place}DataOffsets/{name}"] = starts
-        data = root.require_group(f"{place}Data")
-        if is_static:
-            data[name] = mesh.region.astype(np.uint8)
+        starts = np.arange(len(steps)) * n_values
+        if name in STATIC_FIELDS:
+            data[name], starts = mesh.region.astype(np.uint8), np.zeros_like(starts)
         else:
-            chunks[name] = _create(data, name, len(steps), n_values)
+            targets[name] = _Target.create(data, name, starts, n_values, _written_part(mesh, name))
+        root[f"Steps/{place}DataOffsets/{name}"] = starts
         data[name].attrs["unit"] = UNITS[name]
     for step, state in enumerate(_states(history, steps)):
-        for name, dataset in chunks.items():
-            layout = _LAYOUTS.get(name, Layout())
-            for component, values in zip(layout.written, _components(state, name), strict=True):
-                at = (step * values.size, component)[: dataset.rank]
-                dataset.write_direct_chunk(at, _encoded(values, layout))
+        for name, target in targets.items():
+            target.write(step, _components(state, name))
 
 
-def _create(group: h5py.Group, name: OutputField, n_steps: int, n_values: int) -> h5py.h5d.DatasetID:
-    """Empty dataset of all steps of a field, a chunk for each step and component."""
-    layout = _LAYOUTS.get(name, Layout())
-    n_dims = 1 if layout.n_components == 1 else 2
-    shape, chunk = (n_steps * n_values, layout.n_components)[:n_dims], (n_values, 1)[:n_dims]
-    filters = {"chunks": chunk, "shuffle": True, "compression": "gzip", "compression_opts": 1}
-    return group.create_dataset(name, shape, dtype="<f4", **filters).id
+def _written_part(mesh: Mesh, name: OutputField) -> slice | None:
+    """Where the values of a field of the contour lie, if that is one chunk of several; else None."""
+    start, n = int(mesh.contour[0]), mesh.contour.size
+    together = np.array_equal(mesh.contour, np.arange(start, start + n))
+    aligned = start % n == 0 and mesh.n_points % n == 0
+    return slice(start, start + n) if name in CONTOUR_FIELDS and together and aligned else None
+
+
+@dataclass(frozen=True, eq=False)
+class _Target:
+    """Dataset of all steps of a field; a chunk for each step, component and part.
+
+    Attributes
+    ----------
+    dataset : h5py.h5d.DatasetID
+        Where to write.
+    layout : Layout
+        How to write.
+    starts : (n_steps,) int array
+        Where each step begins.
+    part : slice or None
+        The values of a step that are written, if not all.
+    """
+
+    dataset: h5py.h5d.DatasetID
+    layout: Layout
+    starts: NDArray[np.int64]
+    part: slice | None
+
+    @staticmethod
+    def create(
+        group: h5py.Group, name: OutputField, starts: NDArray[np.int64], n_values: int, part: slice | None
+    ) -> _Target:
+        """Empty dataset."""
+        layout = _LAYOUTS.get(name, Layout())
+        n_dims = 1 if layout.n_components == 1 else 2
+        length = n_values if part is None else part.stop - part.start
+        dataset = group.create_dataset(
+            name,
+            (starts.size * n_values, layout.n_components)[:n_dims],
+            dtype="<f4",
+            chunks=(length, 1)[:n_dims],
+            fillvalue=layout.elsewhere,
+            shuffle=True,
+            compression="gzip",
+            compression_opts=1,
+        )
+        return _Target(dataset.id, layout, starts, part)
+
+    def write(self, step: int, components: tuple[FloatArray, ...]) -> None:
+        """Write the components of one step."""
+        first = int(self.starts[step]) + (0 if self.part is None else self.part.start)
+        for component, values in zip(self.layout.written, components, strict=True):
+            chunk = encoded(values if self.part is None else values[self.part], self.layout)
+            self.dataset.write_direct_chunk((first, component)[: self.dataset.rank], chunk)
 
 
 def _states(history: History, steps: list[int]) -> Iterator[StateFields]:
@@ -204,56 +224,3 @@ def _components(state: StateFields, name: OutputField) -> tuple[FloatArray, ...]
         return state.cell_stress
     values = state[name]
     return (values,) if values.ndim == 1 else tuple(values.T)
-
-
-def _encoded(values: FloatArray, layout: Layout) -> bytes:
-    """One chunk as HDF5 stores it: shuffled bytes of 32-bit floats in a zlib stream.
-
-    Parameters
-    ----------
-    values : (n,) float array
-        One component at one step.
-    layout : Layout
-        How to store it.
-
-    Returns
-    -------
-    bytes
-    """
-    single = values.astype("<f4")
-    if layout.rounded:
-        bits = single.view("<u4")
-        bits += 0x80
-        bits &= 0xFFFFFF00
-    planes = np.ascontiguousarray(single.view(np.uint8).reshape(-1, 4).T)
-    checksum = zlib.adler32(planes.data)
-    if not layout.stored:
-        return zlib.compress(planes.data, 1)
-    blocks = [b"\x78\x01"]
-    for byte, plane in enumerate(planes):
-        if layout.rounded and byte == 0:
-            blocks.append(_deflated_zeros(plane.size))
-        elif byte in layout.stored:
-            blocks += _stored(plane)
-        else:
-            blocks.append(_deflated(plane))
-    return b"".join([*blocks, b"\x03\x00", checksum.to_bytes(4, "big")])
-
-
-def _stored(plane: NDArray[np.uint8]) -> Iterator[bytes]:
-    """Uncompressed blocks of a deflate stream (RFC 1951, 3.2.4), none of them the last."""
-    for start in range(0, plane.size, _LONGEST_BLOCK):
-        block = plane[start : start + _LONGEST_BLOCK].tobytes()
-        yield b"\x00" + len(block).to_bytes(2, "little") + (len(block) ^ 0xFFFF).to_bytes(2, "little")
-        yield block
-
-
-def _deflated(plane: NDArray[np.uint8]) -> bytes:
-    """Compressed blocks of a deflate stream, none of them the last, padded to whole bytes."""
-    stream = zlib.compressobj(1, zlib.DEFLATED, -zlib.MAX_WBITS)
-    return stream.compress(plane.data) + stream.flush(zlib.Z_FULL_FLUSH)
-
-
-@lru_cache(maxsize=8)
-def _deflated_zeros(size: int) -> bytes:
-    return _deflated(np.zeros(size, dtype=np.uint8))

@@ -1,0 +1,94 @@
+"""``gyrify threshold``: the critical value of one parameter."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from cyclopts import Parameter
+
+from gyrify.cli.codes import COMPLETED, STOPPED
+from gyrify.cli.overrides import ConfigPath, Overrides, Text
+from gyrify.cli.streams import complain, print_json, say
+from gyrify.errors import ConfigError, LimitReachedError
+
+if TYPE_CHECKING:
+    from gyrify.threshold import Threshold
+
+DEFAULT = Overrides()
+Key = Literal["growth.ratio", "growth.time", "material.stiffness_ratio", "geometry.cortical_thickness"]
+
+
+def threshold(
+    config: ConfigPath = None,
+    /,
+    *,
+    overrides: Overrides = DEFAULT,
+    parameter: Key = "growth.ratio",
+    definition: Literal["stability", "visible"] = "stability",
+    range_: Annotated[tuple[str, str] | None, Parameter(name="--range")] = None,
+    level: Text = None,
+    points: int | None = None,
+    json: bool = False,
+) -> int:
+    """Find where the smooth slice loses stability, or where folds are seen.
+
+    Parameters
+    ----------
+    parameter : str
+        What is varied.
+    definition : str
+        stability: the smooth equilibrium at the end of growth, without jitter and dissipation, becomes
+        unstable. visible: the gyrification index of a full run passes a level.
+    range_ : (str, str), optional
+        Lower and upper end of what is scanned; numbers may be fractions.
+    level : str, optional
+        Gyrification index (closing) that counts as folded; 1.005 by default.
+    points : int, optional
+        Values to scan.
+    json : bool
+        Print one JSON document.
+    """
+    from gyrify.threshold import critical_growth
+
+    ends = None if range_ is None else (_number("--range", range_[0]), _number("--range", range_[1]))
+    folded = 1.005 if level is None else _number("--level", level)
+    resolved = overrides.resolve(config)
+    try:
+        found = critical_growth(resolved, parameter, definition, ends, level=folded, points=points)
+    except LimitReachedError as limit:
+        complain(str(limit))
+        if json:
+            print_json({"error": "LimitReachedError", "message": limit.message, "advice": limit.advice})
+        return STOPPED
+    for note in found.notes:
+        complain(f"Note: {note}")
+    if json:
+        print_json(found.as_dict())
+    else:
+        _report(found)
+    return COMPLETED
+
+
+def _number(option: str, text: str) -> float:
+    from gyrify.config.numbers import parse_number
+
+    try:
+        return parse_number(text)
+    except ValueError as fault:
+        raise ConfigError(f"{option} {text[:60]!r} is not a number: {fault}.", "Give a number.") from fault
+
+
+def _report(found: Threshold) -> None:
+    from gyrify.threshold import PARAMETERS
+
+    unit = PARAMETERS[found.parameter].unit
+    for crossing in found.crossings:
+        wave = ""
+        if crossing.mode_number is not None and crossing.wavelength_mm is not None:
+            kind = "gyri" if found.definition == "visible" else "waves"
+            wave = f", {crossing.mode_number} {kind} of {crossing.wavelength_mm:.3g} mm"
+        value = f"{crossing.value:.6g} {unit}".rstrip()
+        say(f"{found.parameter} = {value}: becomes {crossing.becomes} above{wave}.")
+    if found.critical_value is None:
+        say(f"Nothing is critical. {found.reason}")
+    say(f"{found.evaluations} evaluations, {found.wall_s:.1f} s.")

@@ -1,0 +1,137 @@
+"""The threshold of one parameter: scan first, then refine every crossing."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from itertools import pairwise
+
+from gyrify.config import Config
+from gyrify.errors import ConfigError
+from gyrify.limits import Watch
+from gyrify.threshold.parameters import PARAMETERS, Range, scan_values
+from gyrify.threshold.result import Crossing, Definition, Scanned, Threshold, main_crossing
+from gyrify.threshold.stability import StabilityScan
+from gyrify.threshold.visible import VisibleScan
+
+# Relative tolerance of a crossing, by definition.
+TOLERANCE: dict[str, float] = {"stability": 1e-6, "visible": 0.01}
+
+
+def critical_growth(
+    config: Config,
+    parameter: str = "growth.ratio",
+    definition: Definition = "stability",
+    range: Range | None = None,
+    *,
+    level: float = 1.005,
+    points: int | None = None,
+    tolerance: float | None = None,
+) -> Threshold:
+    """Find the critical value of one parameter.
+
+    Stability need not be monotone in the parameter, so the range is scanned first and every change is
+    refined; two crossings between neighbouring points of the scan are not seen.
+
+    Parameters
+    ----------
+    config : Config
+        All other parameters.
+    parameter : str
+        ``growth.ratio``, ``growth.time``, ``material.stiffness_ratio`` or ``geometry.cortical_thickness``.
+    definition : {"stability", "visible"}
+        ``stability``: where the smooth equilibrium at the end of growth, without jitter and dissipation,
+        changes stability. ``visible``: where the gyrification index by the closing passes ``level`` after a
+        full run with the configuration's jitter and dissipation.
+    range : (float, float), optional
+        Values to scan between, in the unit of the parameter.
+    level : float
+        Gyrification index above which a slice counts as folded [-], > 1; `visible` only.
+    points : int, optional
+        Values to scan.
+    tolerance : float, optional
+        Relative width to which a crossing is refined; 1e-6 (stability) or 0.01 (visible) by default.
+
+    Returns
+    -------
+    Threshold
+        With ``critical_value`` None and a ``reason`` where nothing is critical.
+
+    Raises
+    ------
+    ConfigError
+        If an argument is out of range.
+    SolveError
+        If the smooth branch cannot be found at either end of the range.
+    LimitReachedError
+        If a limit of the configuration is reached.
+    """
+    begun = time.perf_counter()
+    visible = definition == "visible"
+    _check(definition, level, tolerance)
+    values = scan_values(config, parameter, range, points, visible)
+    watch = Watch(config.limits.wall_time, config.limits.memory)
+    scan = (
+        VisibleScan(config, parameter, level, watch) if visible else StabilityScan(config, parameter, watch)
+    )
+    scanned = scan.scan(values)
+    crossings = tuple(
+        scan.crossing(below, above, tolerance or TOLERANCE[definition])
+        for below, above in pairwise(point for point in scanned if _is_known(point))
+        if _is_beyond(below, level) != _is_beyond(above, level)
+    )
+    main = main_crossing(crossings)
+    return Threshold(
+        parameter=parameter,
+        definition=definition,
+        critical_value=main.value if main else None,
+        reason="" if main else _reason(parameter, scanned, level, visible),
+        notes=tuple(scan.notes),
+        bracket=main.bracket if main else None,
+        mode_number=main.mode_number if main else None,
+        wavelength_mm=main.wavelength_mm if main else None,
+        growth_time=main.growth_time if main else None,
+        crossings=_ordered(crossings),
+        scan=tuple(scanned),
+        level=level if visible else None,
+        evaluations=scan.evaluations,
+        wall_s=time.perf_counter() - begun,
+    )
+
+
+def _check(definition: str, level: float, tolerance: float | None) -> None:
+    if definition not in TOLERANCE:
+        raise ConfigError(f"definition = {definition[:60]!r} is unknown.", "Choose stability or visible.")
+    if not 1.0 < level < 10.0:
+        raise ConfigError(f"level = {level:g} is out of range: it must be above 1.", "Try 1.005.")
+    if tolerance is not None and not 1e-12 <= tolerance <= 0.5:
+        raise ConfigError(f"tolerance = {tolerance:g} is out of range (1e-12 to 0.5).", "Try 1e-6.")
+
+
+def _is_known(point: Scanned) -> bool:
+    return point.n_negative is not None or point.gi is not None
+
+
+def _is_beyond(point: Scanned, level: float) -> bool:
+    """Whether a point is unstable, or visibly folded."""
+    return bool(point.n_negative) if point.gi is None else point.gi > level
+
+
+def _ordered(crossings: Sequence[Crossing]) -> tuple[Crossing, ...]:
+    return tuple(sorted(crossings, key=lambda crossing: crossing.value))
+
+
+def _reason(parameter: str, scanned: Sequence[Scanned], level: float, visible: bool) -> str:
+    """Why nothing is critical."""
+    scanned = [point for point in scanned if _is_known(point)]
+    if len(scanned) < 2:
+        return f"Nothing is known: no two points of {parameter} could be computed."
+    unit = PARAMETERS[parameter].unit
+    low, high = scanned[0].value, scanned[-1].value
+    where = f"at all {len(scanned)} values of {parameter} from {low:.6g} to {high:.6g} {unit}".rstrip()
+    beyond = _is_beyond(scanned[0], level)
+    if visible:
+        outcome = f"The gyrification index is {'above' if beyond else 'at most'} {level:g}"
+    else:
+        outcome = f"The smooth state is {'unstable' if beyond else 'stable'}"
+    return f"{outcome} {where}. Scan another range, or more points."

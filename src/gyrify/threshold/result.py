@@ -1,0 +1,115 @@
+"""What a threshold is: every crossing of a scanned parameter, and the one that counts."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+Definition = Literal["stability", "visible"]
+Becomes = Literal["unstable", "stable", "folded", "smooth"]
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """One value of the parameter at which the outcome changes.
+
+    Attributes
+    ----------
+    value : float
+        Critical value, in the unit of the parameter.
+    becomes : {"unstable", "stable", "folded", "smooth"}
+        What the slice becomes as the parameter rises.
+    bracket : (float, float)
+        The closest values known to lie on either side.
+    mode_number : int or None
+        Waves of the mode along the contour; for visible folds, the number of gyri.
+    wavelength_mm : float or None
+        Deformed contour over the mode number [mm].
+    growth_time : float
+        Growth time [time].
+    """
+
+    value: float
+    becomes: Becomes
+    bracket: tuple[float, float]
+    mode_number: int | None
+    wavelength_mm: float | None
+    growth_time: float
+
+
+@dataclass(frozen=True)
+class Scanned:
+    """One point of the scan.
+
+    Attributes
+    ----------
+    value : float
+        Value of the parameter.
+    n_negative : int or None
+        Negative pivots of the stiffness (definition `stability`).
+    gi : float or None
+        Gyrification index by the closing (definition `visible`).
+    """
+
+    value: float
+    n_negative: int | None = None
+    gi: float | None = None
+
+
+@dataclass(frozen=True)
+class Threshold:
+    """Critical value of one parameter.
+
+    Attributes
+    ----------
+    parameter : str
+        Key of the parameter.
+    definition : {"stability", "visible"}
+        What critical means.
+    critical_value : float or None
+        The first crossing at which the slice becomes unstable (or folded) as the parameter rises, or else
+        the first of the others; None where nothing is critical.
+    reason : str
+        Why nothing is critical; else empty.
+    notes : tuple of str
+        What limits the answer.
+    bracket : (float, float) or None
+        The closest values known to lie on either side of the critical one.
+    mode_number, wavelength_mm, growth_time
+        Of the critical crossing, as in `Crossing`.
+    crossings : tuple of Crossing
+        Every crossing found, in the order of the parameter.
+    scan : tuple of Scanned
+        Every point of the scan, in the order of the parameter.
+    level : float or None
+        Gyrification index above which a slice counts as folded (definition `visible`).
+    evaluations : int
+        Equilibria (or runs) computed.
+    wall_s : float
+        Time taken [s].
+    """
+
+    parameter: str
+    definition: Definition
+    critical_value: float | None
+    reason: str
+    notes: tuple[str, ...]
+    bracket: tuple[float, float] | None
+    mode_number: int | None
+    wavelength_mm: float | None
+    growth_time: float | None
+    crossings: tuple[Crossing, ...]
+    scan: tuple[Scanned, ...]
+    level: float | None
+    evaluations: int
+    wall_s: float
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the fields nested as in ``gyrify threshold --json``."""
+        return asdict(self)
+
+
+def main_crossing(crossings: tuple[Crossing, ...]) -> Crossing | None:
+    """The first crossing into instability or folds, or else the first."""
+    into = [crossing for crossing in crossings if crossing.becomes in ("unstable", "folded")]
+    return next(iter([*into, *crossings]), None)

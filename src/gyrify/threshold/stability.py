@@ -1,0 +1,156 @@
+"""Crossings of stability: the smooth branch scanned over a parameter, each change of inertia refined."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+
+import numpy as np
+from scipy.optimize import brentq
+
+from gyrify.config import Config
+from gyrify.errors import SolveError
+from gyrify.mesh.waves import dominant_wave
+from gyrify.model import Slice
+from gyrify.solve.stability import Eigenpair
+from gyrify.threshold.parameters import configured
+from gyrify.threshold.result import Becomes, Crossing, Scanned
+from gyrify.threshold.smooth import SmoothBranch, SmoothState, grown
+
+# Stability is defined on the smooth branch: without what would disturb or delay the loss of it.
+IDEAL = {"mesh.node_jitter": 0.0, "dissipation.kind": "none", "stability.follow_branch": False}
+
+# An eigenvalue counts as zero below this fraction of those at the neighbouring points of the scan.
+_ZERO = 1e-4
+# The scan ends after so many values in a row without a smooth state.
+_GIVE_UP = 3
+
+
+class StabilityScan:
+    """Inertia and lowest eigenvalue along the smooth branch over one parameter.
+
+    Parameters
+    ----------
+    config : Config
+        The other parameters; jitter and dissipation are set aside.
+    parameter : str
+        Key of the parameter.
+    watch : callable
+        Called at each Newton iteration; may raise to stop.
+    """
+
+    def __init__(self, config: Config, parameter: str, watch: Callable[[], None] = lambda: None) -> None:
+        self._config, self._parameter, self._watch = config.with_overrides(IDEAL), parameter, watch
+        self._first: Slice | None = None
+        self._pairs: dict[float, Eigenpair] = {}
+        self.notes: list[str] = []
+        self._branch: SmoothBranch
+
+    @property
+    def evaluations(self) -> int:
+        """Equilibria computed."""
+        return len(self._branch.known)
+
+    def scan(self, values: Sequence[float]) -> list[Scanned]:
+        """Inertia at each value, as far as the smooth branch is found."""
+        self._start(values)
+        scanned, lost = [], 0
+        for value in values:
+            state = self._state(value)
+            if state is not None:
+                lost = 0
+                scanned.append(Scanned(value, state.tangent(self._system).n_negative))
+                self._note_contact(state)
+                continue
+            lost += 1
+            scanned.append(Scanned(value))
+            if lost == _GIVE_UP:
+                break
+        missing = [point.value for point in scanned if point.n_negative is None]
+        if missing:
+            end = " The scan ends there." if lost else ""
+            self.notes.append(
+                f"The smooth state is not found between {missing[0]:.6g} and {missing[-1]:.6g}: it ends, or "
+                f"veers into folds without a bifurcation.{end}"
+            )
+        return scanned
+
+    def _state(self, value: float) -> SmoothState | None:
+        """Smooth state from its neighbours, or else followed in growth; None where neither finds it."""
+        with suppress(SolveError):
+            return self._branch.at(value)
+        with suppress(SolveError):
+            problem, fraction = self._problem_at(value)
+            u = grown(problem, self._system, fraction, self._watch).u
+            self._branch.known[value] = SmoothState(value, problem, fraction, u)
+            return self._branch.known[value]
+        return None
+
+    def _note_contact(self, state: SmoothState) -> None:
+        if state.is_in_contact and not any("Contact" in note for note in self.notes):
+            self.notes.append(f"Contact acts on the smooth branch from {state.value:.6g} on.")
+
+    def crossing(self, below: Scanned, above: Scanned, tolerance: float) -> Crossing:
+        """Where the lowest eigenvalue vanishes between two points of the scan."""
+        ends = [self.eigenvalue(below.value), self.eigenvalue(above.value)]
+        small = _ZERO * max(map(abs, ends))
+
+        def clipped(value: float) -> float:
+            """Zero once close enough: at the singular state itself Newton's method has no answer."""
+            eigenvalue = self.eigenvalue(value)
+            return eigenvalue if abs(eigenvalue) > small else 0.0
+
+        refined = True
+        try:
+            brentq(clipped, below.value, above.value, xtol=tolerance * above.value)
+        except SolveError:
+            refined = False
+        inside = {v: self._pairs[v] for v in sorted(self._pairs) if below.value <= v <= above.value}
+        was_unstable = bool(below.n_negative)
+        before = max(v for v, pair in inside.items() if (pair.eigenvalue < 0.0) == was_unstable)
+        after = min(v for v, pair in inside.items() if (pair.eigenvalue < 0.0) != was_unstable)
+        start, end = inside[before].eigenvalue, inside[after].eigenvalue
+        root = before + (after - before) * (start / (start - end) if refined else 0.5)
+        if not refined:
+            self.notes.append(f"The crossing between {before:.6g} and {after:.6g} is not known more closely.")
+        nearest = min(inside, key=lambda v: abs(inside[v].eigenvalue))
+        state = self._branch.at(nearest)
+        mode_number, wavelength = dominant_wave(state.problem.mesh, state.u, inside[nearest].vector)
+        time = root if self._parameter == "growth.time" else self._config.growth.duration
+        becomes: Becomes = "stable" if was_unstable else "unstable"
+        return Crossing(root, becomes, (before, after), mode_number, wavelength, time)
+
+    def eigenvalue(self, value: float) -> float:
+        """Lowest eigenvalue at a value of the parameter [Pa/mm^2]."""
+        if value not in self._pairs:
+            self._pairs[value] = self._branch.at(value).tangent(self._system).lowest()
+        return self._pairs[value].eigenvalue
+
+    def _problem_at(self, value: float) -> tuple[Slice, float]:
+        """Tissue and growth fraction; what depends on the mesh alone is shared."""
+        if self._parameter == "growth.time":
+            if self._first is None:
+                self._first = Slice(self._config)
+            return self._first, value / self._config.growth.duration
+        config = configured(self._config, self._parameter, value)
+        if self._first is None or self._parameter.startswith("geometry"):
+            problem = Slice(config)
+        else:
+            problem = self._first.varied(config)
+        self._first = self._first or problem
+        return problem, 1.0
+
+    def _start(self, values: Sequence[float]) -> None:
+        """First state of the branch, followed in growth: at the lowest value, or else at the highest."""
+        for value in (values[0], values[-1]):
+            problem, fraction = self._problem_at(value)
+            self._system = problem.system(np.empty((0, 2), dtype=np.int64))
+            try:
+                u = grown(problem, self._system, fraction, self._watch).u
+            except SolveError:
+                if value == values[-1]:
+                    raise
+                continue
+            start = SmoothState(value, problem, fraction, u)
+            self._branch = SmoothBranch(self._problem_at, start, self._system, self._watch)
+            return
