@@ -33,8 +33,9 @@ POINT_FIELDS: Final[frozenset[OutputField]] = frozenset(
     {"displacement", "thickness", "curvature", "contact_force"}
 )
 # Point fields that live on the contour alone.
-CONTOUR_FIELDS: Final[frozenset[OutputField]] = frozenset({"thickness", "curvature", "contact_force"})
-# Fields computed at integration points, whose means over the cells are given.
+CONTOUR_FIELDS: Final[frozenset[OutputField]] = frozenset(
+    {"thickness", "curvature", "contact_force"}
+)  # Fields computed at integration points, whose means over the cells are given.
 CELL_FIELDS: Final = frozenset(ALL_FIELDS) - POINT_FIELDS - {"region"}
 # Fields that do not change with growth.
 STATIC_FIELDS: Final[frozenset[OutputField]] = frozenset({"region"})
@@ -108,8 +109,9 @@ class FieldMaker:
         entries = np.concatenate([simplices.gradients[:, :, axis].ravel() for axis in range(2)])
         places = (np.concatenate([rows, rows + n]), np.tile(simplices.cells.ravel(), 2))
         self._gradient = csr_array((entries, places), shape=(2 * n, problem.mesh.n_points))
-        across = problem.mesh.across[simplices.cell]
-        self.along = np.stack([-across[:, 1], across[:, 0]])
+        self.along = np.stack([-1.0 * problem.mesh.across[:, 1], problem.mesh.across[:, 0]])[
+            :, simplices.cell
+        ]
 
     def state(self, u: FloatArray, fraction: float, u_start: FloatArray) -> StateFields:
         """Fields of a state.
@@ -128,8 +130,8 @@ class FieldMaker:
 
     def deformation(self, u: FloatArray) -> FloatArray:
         """(2, 2, n) total deformation gradient F_ij = d x_i / d X_j in the plane."""
-        columns = np.asfortranarray(u[: self.problem.mesh.n_points])
-        F = np.stack([(self._gradient @ columns[:, i]).reshape(2, -1) for i in range(2)])
+        columns = np.ascontiguousarray(u[: self.problem.mesh.n_points].T)
+        F = np.stack([(self._gradient @ column).reshape(2, -1) for column in columns])
         F[0, 0] += 1.0
         F[1, 1] += 1.0
         return F
@@ -188,30 +190,29 @@ class StateFields:
         if not problem.tangential.any():
             return np.asarray(F / self._stretch)
         # The inverse of lambda (I - N N) + N N is the same form with 1 / lambda.
-        inverse = growth_tensor(
-            1.0 / self._stretch, problem.tangential, problem.mesh.across[problem.simplices.cell]
-        )
+        across = problem.mesh.across[problem.simplices.cell]
+        inverse = growth_tensor(1.0 / self._stretch, problem.tangential, across)
         return np.asarray(np.einsum("ikc,ckj->ijc", F, inverse))
 
     @cached_property
     def stress(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Cauchy stress components 11, 22, 33, 12, each (n,) [Pa]; 13 and 23 are zero."""
         problem, F = self._problem, self._F_e
-        axial = problem.axial_stretch(self._state)
-        f33 = axial / out_of_plane_growth(self._stretch, problem.config.growth.out_of_plane)
+        F_g33 = out_of_plane_growth(self._stretch, problem.config.growth.out_of_plane)
+        f33 = problem.axial_stretch(self._state) / F_g33
         b11, b22 = F[0, 0] ** 2 + F[0, 1] ** 2, F[1, 0] ** 2 + F[1, 1] ** 2
         b33, b12 = f33**2, F[0, 0] * F[1, 0] + F[0, 1] * F[1, 1]
         pressure = problem.volumetric_pressure(self._state, self._time)
         kappa = problem.kappa if pressure is None else np.zeros_like(problem.kappa)
         W_1, W_J, *_ = derivatives.py_func(b11 + b22 + b33, self._J_e, problem.mu, kappa)
-        W_J = W_J if pressure is None else W_J + pressure
+        W_J += 0.0 if pressure is None else pressure
         factor = 2.0 * W_1 / self._J_e
         return factor * b11 + W_J, factor * b22 + W_J, factor * b33 + W_J, factor * b12
 
     @property
     def cell_stress(self) -> tuple[FloatArray, ...]:
-        """Means over the cells of the components of `stress`, each (n_cells,) [Pa]."""
-        return tuple(self._problem.simplices.cell_means(component) for component in self.stress)
+        """Means over the cells of `stress`, each (n_cells,) [Pa]."""
+        return tuple(map(self._problem.simplices.cell_means, self.stress))
 
     def _cauchy_stress(self) -> FloatArray:
         s11, s22, s33, s12 = self.stress
