@@ -94,8 +94,8 @@ def folded_picture(history: History, summary: dict[str, Any]) -> Figure:
         title += f" ({history.status} at {history.fractions[-1]:.0%} of growth)"
     return folded_figure(
         history.points(),
-        mesh.cells,
-        mesh.region,
+        mesh.triangles,
+        mesh.triangle_region,
         mesh.contour,
         mesh.interface,
         closing_radius=config.metrics.closing_radius,

@@ -107,7 +107,7 @@ def _evaluate(
         elif end.gradient is not None:
             force_after = end.gradient
     gradient[problem.mesh.clamped] = 0.0
-    J = problem.simplices.volume_ratio(after.u)
+    J = problem.volume_ratio(after.u)
     power_after = _growth_power(problem, span[1], after.u)
     work, work_error = _growth_work(problem, before, after, span, (power, power_after))
     return (

@@ -68,7 +68,7 @@ class Run:
     def __init__(self, problem: Slice, journal: Journal, note: str = "") -> None:
         self.problem, self.journal, self.note = problem, journal, note
         if len(journal) == 0:
-            journal.append(State.reference(problem.mesh.n_points, problem.mesh.n_dim), 0.0)
+            journal.append(State.reference(*problem.state_shape), 0.0)
 
     @property
     def history(self) -> History:

@@ -45,7 +45,7 @@ def volume_extremes(history: History, index: int = -1) -> tuple[float, float]:
     """Smallest J = det F and smallest J_e = J / J_g over the cells of a state [-]."""
     problem = history.slice
     number = index % len(history)
-    J = problem.simplices.volume_ratio(history.displacement(number))
+    J = problem.volume_ratio(history.state_vector(number))
     J_g = problem.volume_growth(float(history.growth_times[number]))
     return float(J.min()), float((J / J_g).min())
 

@@ -19,7 +19,8 @@ LAYERS = [
     {"errors", "versions"},
     {"config", "physics", "mesh", "theory", "limits"},
     {"energy", "metrics"},
-    {"solve"},
+    {"solve", "meshing"},
+    {"tissue"},
     {"model"},
 ]
 # What kernels and readers may know, more strictly than by their layer.

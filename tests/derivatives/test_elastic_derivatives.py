@@ -39,7 +39,6 @@ def test_error_of_differences_is_a_v_in_space(rng: np.random.Generator) -> None:
     assert_derivatives(term, u, du, STEPS)
 
 
-@pytest.mark.xfail(reason="I1 of a tetrahedron counts the out-of-plane stretch 1 of the plane", strict=False)
 def test_energy_of_a_tetrahedron_has_no_embedding() -> None:
     """F = 2 I in space: J = 8, I1 = 12, W = mu/2 (12/4 - 3) + kappa/2 7^2 = 24.5 kappa; volume 1/6."""
     points = np.concatenate([np.zeros((1, 3)), np.eye(3)])

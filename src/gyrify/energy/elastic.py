@@ -10,10 +10,22 @@ from gyrify.energy.term import Evaluation, FloatArray, Hessian, IntArray, Patter
 
 
 class CellPattern:
-    """Sparsity pattern of a mesh and the position in it of every entry of every cell matrix."""
+    """Sparsity pattern of a mesh and the position in it of every entry of every cell matrix.
 
-    def __init__(self, cells: IntArray, n_dim: int) -> None:
+    Parameters
+    ----------
+    cells : (n_cells, n_nodes) int array
+        Point indices.
+    n_dim : int
+        Degrees of freedom of a point.
+    extra : int, optional
+        A degree of freedom that all cells share.
+    """
+
+    def __init__(self, cells: IntArray, n_dim: int, extra: int | None = None) -> None:
         dofs = (cells[:, :, None] * n_dim + np.arange(n_dim)).reshape(cells.shape[0], -1)
+        if extra is not None:
+            dofs = np.concatenate([dofs, np.full((cells.shape[0], 1), extra)], axis=1)
         p, q = np.triu_indices(dofs.shape[1])
         self.pattern, position = Pattern.of(dofs[:, p], dofs[:, q])
         self.position = np.ascontiguousarray(position, dtype=np.int32)
@@ -52,22 +64,18 @@ class ElasticEnergy:
 
     def evaluate(self, u: FloatArray, order: int, project_psd: bool = False) -> Evaluation:
         """Energy [Pa mm^2], gradient [Pa mm], Hessian [Pa]; see `EnergyTerm`."""
+        return self._accumulate(u, order, project_psd, self.kappa, np.zeros_like(self.kappa))
+
+    def _accumulate(
+        self, u: FloatArray, order: int, project_psd: bool, kappa: FloatArray, pressure: FloatArray
+    ) -> Evaluation:
+        """Sum over cells, with a pressure [Pa] added to dW/dJ of each."""
         k = self.kinematics
         gradient = np.zeros_like(u) if order >= 1 else np.empty((0, u.shape[1]))
         values = np.zeros(self.pattern.pattern.rows.size if order >= 2 else 0)
-        material = (self.mu, self.kappa, self.weight)
+        cells = (k.cells, k.base, k.gradients, k.f33, self.mu, kappa, pressure, self.weight)
         value = self._kernels.accumulate(
-            u,
-            k.cells,
-            k.base,
-            k.gradients,
-            k.f33,
-            *material,
-            order,
-            project_psd,
-            self.pattern.position,
-            gradient,
-            values,
+            u, *cells, order, project_psd, self.pattern.position, gradient, values
         )
         if not np.isfinite(value):
             return Evaluation(np.inf)

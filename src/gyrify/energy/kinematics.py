@@ -6,22 +6,28 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gyrify.energy.element import reference_element
 from gyrify.energy.kernels import elastic_kernels
 from gyrify.energy.term import FloatArray, IntArray
 
 
 @dataclass(frozen=True, eq=False)
 class Simplices:
-    """Cells with d + 1 nodes and the gradients of their linear shape functions.
+    """Integration points of simplices, each with the nodes of its cell and its share of the volume.
+
+    Linear cells (d + 1 nodes) have one point; quadratic triangles (6 nodes, curved edges) have three. All
+    that follows is a sum over integration points.
 
     Attributes
     ----------
-    cells : (n_cells, n_nodes) int array
-        Point indices.
-    gradients : (n_cells, n_nodes, n_dim) float array
+    cells : (n, n_nodes) int array
+        Point indices of the cell around each integration point.
+    gradients : (n, n_nodes, n_dim) float array
         dN_a / dX [1/mm].
-    volumes : (n_cells,) float array
-        Reference volume, an area in the plane [mm^2].
+    volumes : (n,) float array
+        Share of the reference volume, an area in the plane [mm^2].
+    cell : (n,) int array
+        Cell of each integration point, in order.
     n_points : int
         Number of points of the mesh.
     """
@@ -29,17 +35,48 @@ class Simplices:
     cells: IntArray
     gradients: FloatArray
     volumes: FloatArray
+    cell: IntArray
     n_points: int
 
     @staticmethod
     def of(cell_points: FloatArray, cells: IntArray, n_points: int) -> Simplices:
-        """Simplices from their (n_cells, n_dim + 1, n_dim) corner coordinates [mm]."""
-        n_dim = cell_points.shape[2]
-        edges = np.swapaxes(cell_points[:, 1:] - cell_points[:, :1], 1, 2)
-        inner = np.linalg.inv(edges)
-        gradients = np.concatenate([-inner.sum(axis=1, keepdims=True), inner], axis=1)
-        volumes = np.linalg.det(edges) / float(np.prod(np.arange(1, n_dim + 1)))
-        return Simplices(cells, np.ascontiguousarray(gradients), volumes, n_points)
+        """Integration points of cells with (n_cells, n_nodes, n_dim) node coordinates [mm]."""
+        n_cells, n_nodes, n_dim = cell_points.shape
+        slopes, weights = reference_element(n_nodes, n_dim)
+        mapping = np.einsum("cai,qaj->cqij", cell_points, slopes)
+        gradients = np.einsum("qaj,cqji->cqai", slopes, np.linalg.inv(mapping))
+        volumes = np.linalg.det(mapping) * weights
+        return Simplices(
+            cells=np.repeat(cells, weights.size, axis=0),
+            gradients=np.ascontiguousarray(gradients.reshape(-1, n_nodes, n_dim)),
+            volumes=volumes.ravel(),
+            cell=np.repeat(np.arange(n_cells), weights.size),
+            n_points=n_points,
+        )
+
+    @property
+    def lumped_volumes(self) -> FloatArray:
+        """(n_points,) share of the reference volume of each point of the mesh [mm^2].
+
+        A quadratic triangle gives 1/12 to each corner and 1/4 to each node between: the shares of its four
+        halves-edge triangles, since the row sums of its mass matrix vanish at the corners.
+        """
+        n_nodes = self.cells.shape[1]
+        shares = np.repeat([1 / 12, 1 / 4], 3) if n_nodes == 6 else np.full(n_nodes, 1 / n_nodes)
+        lumped = np.zeros(self.n_points)
+        np.add.at(lumped, self.cells, self.volumes[:, None] * shares)
+        return lumped
+
+    def cell_means(self, values: FloatArray) -> FloatArray:
+        """(n_cells, ...) means over the cells of values at the integration points, weighted by volume."""
+        n_cells = int(self.cell[-1]) + 1
+        if n_cells == self.cell.size:
+            return values
+        weighted = values * self.volumes.reshape(-1, *([1] * (values.ndim - 1)))
+        sums = np.zeros((n_cells, *values.shape[1:]))
+        np.add.at(sums, self.cell, weighted)
+        volumes = np.bincount(self.cell, weights=self.volumes)
+        return np.asarray(sums / volumes.reshape(-1, *([1] * (values.ndim - 1))))
 
     def volume_ratio(self, u: FloatArray) -> FloatArray:
         """(n_cells,) in-plane det F of a state u [mm]."""

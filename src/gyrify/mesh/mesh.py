@@ -23,8 +23,9 @@ class Mesh:
     ----------
     points : (n_points, n_dim) float array
         Reference coordinates X [mm].
-    cells : (n_cells, n_dim + 1) int array
-        Point indices of each simplex, positively oriented.
+    cells : (n_cells, n_nodes) int array
+        Point indices of each simplex, positively oriented: corners, then the nodes between them if it is
+        quadratic (in the order of VTK).
     region : (n_cells,) int8 array
         `WHITE` (0) or `GREY` (1).
     contour : (n_contour,) int array
@@ -35,6 +36,8 @@ class Mesh:
         Points whose displacement is zero.
     across : (n_cells, n_dim) float array
         Unit reference direction N across the layers, pointing outwards.
+    patch : (n_cells,) int array
+        Quadrilateral that each cell is a part of.
     is_closed : bool
         Whether the contour is a closed loop (a ring) or runs along one period (a strip).
     period : float or None
@@ -48,6 +51,7 @@ class Mesh:
     interface: IntArray
     clamped: IntArray
     across: FloatArray
+    patch: IntArray
     is_closed: bool = True
     period: float | None = None
 
@@ -77,6 +81,18 @@ class Mesh:
     def n_cells(self) -> int:
         """Number of cells."""
         return int(self.cells.shape[0])
+
+    @property
+    def triangles(self) -> IntArray:
+        """(n_triangles, 3) straight triangles between all nodes: the cells, or four for each quadratic one."""
+        if self.cells.shape[1] == 3:
+            return self.cells
+        return self.cells[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
+
+    @property
+    def triangle_region(self) -> NDArray[np.int8]:
+        """(n_triangles,) tissue of each of the `triangles`."""
+        return np.repeat(self.region, self.triangles.shape[0] // self.n_cells)
 
     @property
     def cell_points(self) -> FloatArray:

@@ -56,6 +56,7 @@ def elliptic_ring(
         interface=sheet.rows[sheet.interface_row],
         clamped=sheet.rows[0],
         across=_ellipse_normals(points[sheet.cells[:, :3]].mean(axis=1), semi_axes),
+        patch=sheet.patch,
     )
     require_quality(mesh)
     return mesh

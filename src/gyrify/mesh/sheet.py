@@ -66,6 +66,8 @@ class Sheet:
         Triangles, positive where ``along`` runs counter-clockwise and depth outwards.
     region : (n_cells,) int8 array
         Tissue.
+    patch : (n_cells,) int array
+        Quadrilateral that each triangle is a part of.
     rows : tuple of int arrays
         Points of each row.
     interface_row : int
@@ -76,6 +78,7 @@ class Sheet:
     along: FloatArray
     cells: IntArray
     region: NDArray[np.int8]
+    patch: IntArray
     rows: tuple[IntArray, ...]
     interface_row: int
 
@@ -114,7 +117,10 @@ def build_sheet(layers: Layers, cortical_share: float, unit: tuple[float, float]
     parts = [_band(rows[i], rows[i + 1], i, layers.split, rng) for i in range(len(rows) - 1)]
     layer = np.repeat(np.arange(len(parts)), [len(part) for part in parts])
     region = np.where(layer >= interface_row, GREY, WHITE).astype(np.int8)
-    sheet = Sheet(depth, along, np.concatenate(parts), region, rows, interface_row)
+    quads = [np.repeat(np.arange(n), len(part) // n) for part, n in zip(parts, columns[:-1], strict=True)]
+    offsets = np.concatenate([[0], np.cumsum(columns[:-1])])
+    patch = np.concatenate([offset + quad for offset, quad in zip(offsets, quads, strict=False)])
+    sheet = Sheet(depth, along, np.concatenate(parts), region, patch, rows, interface_row)
     return add_midside_nodes(sheet) if layers.element == "quadratic" else sheet
 
 
@@ -137,6 +143,7 @@ def add_midside_nodes(sheet: Sheet) -> Sheet:
         along=np.concatenate([sheet.along, sheet.along[first] + 0.5 * step]),
         cells=np.concatenate([sheet.cells, middle], axis=1),
         region=sheet.region,
+        patch=sheet.patch,
         rows=rows,
         interface_row=sheet.interface_row,
     )

@@ -58,6 +58,7 @@ def periodic_strip(length: float, depth: float, cortical_thickness: float, layer
         interface=sheet.rows[sheet.interface_row],
         clamped=sheet.rows[0],
         across=np.tile([0.0, 1.0], (sheet.cells.shape[0], 1)),
+        patch=sheet.patch,
         is_closed=False,
         period=length,
     )

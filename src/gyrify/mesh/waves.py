@@ -63,7 +63,7 @@ def dominant_wave(mesh: Mesh, u: FloatArray, du: FloatArray) -> tuple[int, float
 
 def _edges(mesh: Mesh, u: FloatArray) -> FloatArray:
     """(n_contour, 2) deformed edges [mm], the last one back to the first point or across the period."""
-    x = (mesh.points + u)[mesh.contour]
+    x = mesh.points[mesh.contour] + u[mesh.contour]
     edges = np.roll(x, -1, axis=0) - x
     if mesh.period is not None:
         edges[-1, 0] += mesh.period * np.sign(edges[0, 0])

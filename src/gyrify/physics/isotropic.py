@@ -23,10 +23,10 @@ FloatArray = NDArray[np.float64]
 
 
 @njit(cache=True, inline="always")
-def coefficients(I1, J, mu, kappa):  # type: ignore[no-untyped-def]
-    """a, b, c, d, e [Pa] of stress and tangent."""
+def coefficients(I1, J, mu, kappa, pressure):  # type: ignore[no-untyped-def]
+    """a, b, c, d, e [Pa] of stress and tangent; a given pressure is added to dW/dJ."""
     W_1, W_J, W_11, W_1J, W_JJ = derivatives(I1, J, mu, kappa)
-    b = J * W_J
+    b = J * (W_J + pressure)
     return 2.0 * W_1, b, b + J * J * W_JJ, 4.0 * W_11, 2.0 * J * W_1J
 
 

@@ -112,7 +112,7 @@ def _write_stl(history: History, path: Path, states: list[int]) -> list[Path]:
     meshio = _meshio("stl")
     files = _numbered(path, states)
     for file, number in zip(files, states, strict=True):
-        sheet = meshio.Mesh(_padded(history.points(number)), [("triangle", history.mesh.cells)])
+        sheet = meshio.Mesh(_padded(history.points(number)), [("triangle", history.mesh.triangles)])
         meshio.write(file, sheet, file_format="stl", binary=True)
     return files
 
@@ -201,7 +201,7 @@ def _data(
 
 
 def _cells(history: History) -> list[tuple[str, Any]]:
-    return [("triangle", history.mesh.cells)]
+    return [("triangle" if history.mesh.cells.shape[1] == 3 else "triangle6", history.mesh.cells)]
 
 
 def _padded(vectors: FloatArray) -> FloatArray:

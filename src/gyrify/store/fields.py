@@ -33,7 +33,10 @@ POINT_FIELDS: Final[frozenset[OutputField]] = frozenset(
     {"displacement", "thickness", "curvature", "contact_force"}
 )
 # Point fields that live on the contour alone.
-CONTOUR_FIELDS: Final[frozenset[OutputField]] = frozenset({"thickness", "curvature", "contact_force"})
+CONTOUR_FIELDS: Final[frozenset[OutputField]] = frozenset(
+    {"thickness", "curvature", "contact_force"}
+)  # Fields computed at integration points, whose means over the cells are given.
+CELL_FIELDS: Final = frozenset(ALL_FIELDS) - POINT_FIELDS - {"region"}
 # Fields that do not change with growth.
 STATIC_FIELDS: Final[frozenset[OutputField]] = frozenset({"region"})
 
@@ -83,8 +86,8 @@ def fields(
         If there is no such state.
     """
     number = index + len(history) if index < 0 else index
-    u = history.displacement(number)
-    u_start = history.displacement(max(number - 1, 0))
+    u = history.state_vector(number)
+    u_start = history.state_vector(max(number - 1, 0))
     state = FieldMaker(history.slice).state(u, float(history.fractions[number]), u_start)
     return {name: state[name] for name in names}
 
@@ -100,13 +103,15 @@ class FieldMaker:
 
     def __init__(self, problem: Slice) -> None:
         self.problem = problem
-        simplices, n_cells = problem.simplices, problem.mesh.n_cells
-        n_nodes = simplices.cells.shape[1]
-        rows = np.repeat(np.arange(n_cells), n_nodes)
+        simplices = problem.simplices
+        n, n_nodes = simplices.cells.shape
+        rows = np.repeat(np.arange(n), n_nodes)
         entries = np.concatenate([simplices.gradients[:, :, axis].ravel() for axis in range(2)])
-        places = (np.concatenate([rows, rows + n_cells]), np.tile(simplices.cells.ravel(), 2))
-        self._gradient = csr_array((entries, places), shape=(2 * n_cells, problem.mesh.n_points))
-        self.along = np.stack([-problem.mesh.across[:, 1], problem.mesh.across[:, 0]])
+        places = (np.concatenate([rows, rows + n]), np.tile(simplices.cells.ravel(), 2))
+        self._gradient = csr_array((entries, places), shape=(2 * n, problem.mesh.n_points))
+        self.along = np.stack([-1.0 * problem.mesh.across[:, 1], problem.mesh.across[:, 0]])[
+            :, simplices.cell
+        ]
 
     def state(self, u: FloatArray, fraction: float, u_start: FloatArray) -> StateFields:
         """Fields of a state.
@@ -124,8 +129,9 @@ class FieldMaker:
         return StateFields(self, u, fraction, u_start)
 
     def deformation(self, u: FloatArray) -> FloatArray:
-        """(2, 2, n_cells) total deformation gradient F_ij = d x_i / d X_j in the plane."""
-        F = np.stack([(self._gradient @ np.ascontiguousarray(u[:, i])).reshape(2, -1) for i in range(2)])
+        """(2, 2, n) total deformation gradient F_ij = d x_i / d X_j in the plane."""
+        columns = np.ascontiguousarray(u[: self.problem.mesh.n_points].T)
+        F = np.stack([(self._gradient @ column).reshape(2, -1) for column in columns])
         F[0, 0] += 1.0
         F[1, 1] += 1.0
         return F
@@ -136,7 +142,8 @@ class StateFields:
 
     def __init__(self, maker: FieldMaker, u: FloatArray, fraction: float, u_start: FloatArray) -> None:
         self._maker, self._problem = maker, maker.problem
-        self._u, self._u_start = u, u_start
+        self._state, self._u_start = u, u_start
+        self._u = u[: maker.problem.mesh.n_points]
         self._time = fraction * maker.problem.config.growth.duration
         self._getters: dict[OutputField, Callable[[], FloatArray]] = {
             "displacement": lambda: self._u,
@@ -155,11 +162,12 @@ class StateFields:
         }
 
     def __getitem__(self, name: OutputField) -> FloatArray:
-        return self._getters[name]()
+        values = self._getters[name]()
+        return self._problem.simplices.cell_means(values) if name in CELL_FIELDS else values
 
     @cached_property
     def _stretch(self) -> FloatArray:
-        """(n_cells,) growth stretch of the tissue."""
+        """(n,) growth stretch of the tissue."""
         return growth_stretch(self._problem.rate, self._time, self._problem.config.growth.stretch)
 
     @cached_property
@@ -168,7 +176,8 @@ class StateFields:
 
     @cached_property
     def _J(self) -> FloatArray:
-        return np.asarray(self._F[0, 0] * self._F[1, 1] - self._F[0, 1] * self._F[1, 0])
+        axial = self._problem.axial_stretch(self._state)
+        return np.asarray((self._F[0, 0] * self._F[1, 1] - self._F[0, 1] * self._F[1, 0]) * axial)
 
     @cached_property
     def _J_e(self) -> FloatArray:
@@ -176,24 +185,34 @@ class StateFields:
 
     @cached_property
     def _F_e(self) -> FloatArray:
-        """(2, 2, n_cells) elastic deformation gradient in the plane."""
+        """(2, 2, n) elastic deformation gradient in the plane."""
         problem, F = self._problem, self._F
         if not problem.tangential.any():
             return np.asarray(F / self._stretch)
         # The inverse of lambda (I - N N) + N N is the same form with 1 / lambda.
-        inverse = growth_tensor(1.0 / self._stretch, problem.tangential, problem.mesh.across)
+        across = problem.mesh.across[problem.simplices.cell]
+        inverse = growth_tensor(1.0 / self._stretch, problem.tangential, across)
         return np.asarray(np.einsum("ikc,ckj->ijc", F, inverse))
 
     @cached_property
     def stress(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Cauchy stress components 11, 22, 33, 12, each (n_cells,) [Pa]; 13 and 23 are zero."""
+        """Cauchy stress components 11, 22, 33, 12, each (n,) [Pa]; 13 and 23 are zero."""
         problem, F = self._problem, self._F_e
-        f33 = 1.0 / out_of_plane_growth(self._stretch, problem.config.growth.out_of_plane)
+        F_g33 = out_of_plane_growth(self._stretch, problem.config.growth.out_of_plane)
+        f33 = problem.axial_stretch(self._state) / F_g33
         b11, b22 = F[0, 0] ** 2 + F[0, 1] ** 2, F[1, 0] ** 2 + F[1, 1] ** 2
         b33, b12 = f33**2, F[0, 0] * F[1, 0] + F[0, 1] * F[1, 1]
-        W_1, W_J, *_ = derivatives.py_func(b11 + b22 + b33, self._J_e, problem.mu, problem.kappa)
+        pressure = problem.volumetric_pressure(self._state, self._time)
+        kappa = problem.kappa if pressure is None else np.zeros_like(problem.kappa)
+        W_1, W_J, *_ = derivatives.py_func(b11 + b22 + b33, self._J_e, problem.mu, kappa)
+        W_J += 0.0 if pressure is None else pressure
         factor = 2.0 * W_1 / self._J_e
         return factor * b11 + W_J, factor * b22 + W_J, factor * b33 + W_J, factor * b12
+
+    @property
+    def cell_stress(self) -> tuple[FloatArray, ...]:
+        """Means over the cells of `stress`, each (n_cells,) [Pa]."""
+        return tuple(map(self._problem.simplices.cell_means, self.stress))
 
     def _cauchy_stress(self) -> FloatArray:
         s11, s22, s33, s12 = self.stress

@@ -83,6 +83,14 @@ class History:
 
     def displacement(self, index: int = -1) -> FloatArray:
         """(n_points, 2) displacement u [mm] of a state; negative indices count from the end."""
+        return self.state_vector(index)[: self.mesh.n_points]
+
+    def axial_stretch(self, index: int = -1) -> float:
+        """Total out-of-plane stretch F33 of a state: 1 in plane strain."""
+        return self.slice.axial_stretch(self.state_vector(index))
+
+    def state_vector(self, index: int = -1) -> FloatArray:
+        """(n_rows, 2) all unknowns of a state [mm]: the displacement, and F33 where it is one."""
         number = index + len(self) if index < 0 else index
         if not 0 <= number < len(self):
             raise HistoryError(

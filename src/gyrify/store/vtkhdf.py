@@ -33,8 +33,8 @@ from gyrify.store.fields import CONTOUR_FIELDS, POINT_FIELDS, STATIC_FIELDS, UNI
 from gyrify.store.history import History
 
 FORMAT_VERSION: Final = (2, 2)
-# VTK's number of a triangle.
-_TRIANGLE: Final = 5
+# VTK's numbers of triangles with three and six nodes.
+_TRIANGLES: Final = {3: 5, 6: 22}
 
 _COMPRESSED: Final = Layout(stored=(), rounded=False)
 _ON_CONTOUR: Final = Layout(stored=(), rounded=False, elsewhere=np.nan)
@@ -111,7 +111,7 @@ def _write_geometry(root: h5py.Group, history: History, steps: list[int]) -> Non
     root["Points"] = np.pad(mesh.points, ((0, 0), (0, 1)))
     root["Connectivity"] = mesh.cells.ravel()
     root["Offsets"] = np.arange(mesh.n_cells + 1) * n_nodes
-    root["Types"] = np.full(mesh.n_cells, _TRIANGLE, dtype=np.uint8)
+    root["Types"] = np.full(mesh.n_cells, _TRIANGLES[n_nodes], dtype=np.uint8)
     group = root.create_group("Steps")
     group.attrs["NSteps"] = n_steps
     group["Values"] = history.growth_times[steps]
@@ -211,16 +211,16 @@ class _Target:
 def _states(history: History, steps: list[int]) -> Iterator[StateFields]:
     """Fields of the chosen states; each depends on the state before it too."""
     maker, fractions = FieldMaker(history.slice), history.fractions
-    last, u_last = -1, history.displacement(0)
+    last, u_last = -1, history.state_vector(0)
     for number in steps:
-        u_start = u_last if last == number - 1 else history.displacement(max(number - 1, 0))
-        last, u_last = number, history.displacement(number)
+        u_start = u_last if last == number - 1 else history.state_vector(max(number - 1, 0))
+        last, u_last = number, history.state_vector(number)
         yield maker.state(u_last, float(fractions[number]), u_start)
 
 
 def _components(state: StateFields, name: OutputField) -> tuple[FloatArray, ...]:
     """Written components of a field, in the order of VTK (a symmetric tensor: 11, 22, 33, 12, 23, 13)."""
     if name == "cauchy_stress":
-        return state.stress
+        return state.cell_stress
     values = state[name]
     return (values,) if values.ndim == 1 else tuple(values.T)
