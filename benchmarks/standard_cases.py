@@ -57,7 +57,10 @@ def main() -> None:
     todo = [(name, seed) for name in CASES for seed in range(options.seeds)]
     with ProcessPoolExecutor(options.workers) as pool:
         results = dict(zip(todo, pool.map(fold, todo), strict=True))
-    print("| case | GI closing | GI hull | gyri | smallest gap / mm | crosses itself | deepest sulcus / mm |", end="")
+    print(
+        "| case | GI closing | GI hull | gyri | smallest gap / mm | crosses itself | deepest sulcus / mm |",
+        end="",
+    )
     print(" iterations | solve / s |\n|---|---|---|---|---|---|---|---|---|")
     for name in CASES:
         rows = np.array([results[name, seed] for seed in range(options.seeds)], dtype=float)

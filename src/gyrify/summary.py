@@ -86,7 +86,7 @@ def summarise(history: History) -> dict[str, Any]:
     min_J, min_J_elastic = volume_extremes(history)
     stats = history.stats
     n_contour = history.mesh.contour.size
-    return _without_infinities(
+    summary: dict[str, Any] = _without_infinities(
         {
             "status": history.status,
             "reason": history.reason,
@@ -116,6 +116,7 @@ def summarise(history: History) -> dict[str, Any]:
             "seed": history.config.seed,
         }
     )
+    return summary
 
 
 def _onset(history: History) -> dict[str, Any] | None:

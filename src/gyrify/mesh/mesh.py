@@ -84,7 +84,7 @@ class Mesh:
 
     @property
     def triangles(self) -> IntArray:
-        """(n_triangles, 3) straight triangles between all nodes: the cells, or four for each quadratic one."""
+        """(n_triangles, 3) straight triangles between all nodes: the cells, or four per quadratic one."""
         if self.cells.shape[1] == 3:
             return self.cells
         return self.cells[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)

@@ -72,4 +72,5 @@ def first_piola(
 
 def invariants(F: FloatArray, f33: FloatArray) -> tuple[FloatArray, FloatArray]:
     """I1 = tr F F^T and J = det F of the embedded gradient; parameters as in `energy_density`."""
-    return np.einsum("cij,cij->c", F, F) + f33 * f33, np.linalg.det(F) * f33
+    out_of_plane = f33 * f33 if F.shape[1] == 2 else 0.0
+    return np.einsum("cij,cij->c", F, F) + out_of_plane, np.linalg.det(F) * f33
