@@ -102,12 +102,10 @@ def _carry_out(
             if json:
                 print_json({"error": "HistoryError", "message": fault.message, "advice": fault.advice})
             return FAILED
+    _warn(summary, history.fractions[-1], folder, quiet)
     if json:
         print_json(summary)
-    if summary["status"] == "interrupted":
-        complain(f"Interrupted at {history.fractions[-1]:.1%} of growth; every accepted increment is stored.")
-        complain(f"Continue with: gyrify resume {folder}")
-    elif not json:
+    elif summary["status"] != "interrupted":
         _report(summary, folder)
     return INTERRUPTED if interrupts.requested else _EXIT_CODES[summary["status"]]
 
@@ -137,14 +135,22 @@ def _silencer(note: threading.Timer) -> Observer:
     return lambda _: note.cancel()
 
 
-def _report(summary: dict[str, Any], folder: Path) -> None:
+def _warn(summary: dict[str, Any], fraction: float, folder: Path, quiet: bool) -> None:
+    """Say on stderr what a reader of the result must not overlook."""
     from gyrify.summary import warnings
 
-    gi = summary["gi"]
-    if summary["status"] != "completed":
+    if summary["status"] == "interrupted":
+        complain(f"Interrupted at {fraction:.1%} of growth; every accepted increment is stored.")
+        complain(f"Continue with: gyrify resume {folder}")
+    elif summary["status"] != "completed":
         complain(f"The run {summary['status']}: {summary['reason']} {summary['advice']}")
-    for warning in warnings(summary):
-        complain(f"Warning: {warning}")
+    if not quiet:
+        for warning in warnings(summary):
+            complain(f"Warning: {warning}")
+
+
+def _report(summary: dict[str, Any], folder: Path) -> None:
+    gi = summary["gi"]
     say(
         f"GI {gi['closing']:.3f} (closing of {gi['closing_radius_mm']:g} mm), {gi['hull']:.3f} (hull); "
         f"{summary['n_gyri']} gyri; sulci up to {summary['sulcal_depth_mm']['max']:.2f} mm deep."

@@ -83,11 +83,12 @@ class Journal:
                     connection.executemany("INSERT INTO meta VALUES (?, ?)", _sealed(meta).items())
                     connection.execute(f"PRAGMA application_id = {_APPLICATION_ID}")
                     connection.execute(f"PRAGMA user_version = {FORMAT}")
-        except HistoryError:
+        except HistoryError as fault:
             if path is not None:  # half a journal is no run: nothing was accepted yet
                 for suffix in ("", "-wal", "-shm"):
                     Path(f"{path}{suffix}").unlink(missing_ok=True)
-            raise
+            advice = fault.advice.replace("continue with `gyrify resume`", "run again")
+            raise HistoryError(fault.message, advice) from fault
         return Journal(connection, path)
 
     @staticmethod

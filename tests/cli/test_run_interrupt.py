@@ -1,0 +1,176 @@
+"""Ctrl-C and SIGTERM at any moment: exit code 130 within two seconds, nothing lost, no traceback."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import random
+import re
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from gyrify.cli import main
+from gyrify.config import Config
+from gyrify.errors import HistoryError
+from gyrify.simulation import simulate
+from gyrify.store import History
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+LONGEST = 2.0  # [s]
+# Long enough to be interrupted, cheap to resume.
+LONG = {"mesh.n_around": 48, "mesh.n_layers": 8, "mesh.n_cortex_layers": 3, "solver.increments": 300}
+# SIGINT as a terminal's child has it, whatever runs the tests.
+START = """
+import os, signal, sys
+signal.signal(signal.SIGINT, signal.SIG_DFL)
+os.execv(sys.argv[1], sys.argv[1:])
+"""
+
+
+@dataclass(frozen=True)
+class Interrupted:
+    """How an interrupted run ended."""
+
+    code: int
+    latency: float
+    stdout: str
+    stderr: str
+
+
+@pytest.fixture(scope="module")
+def long() -> Config:
+    return Config.preset("reference-slice").with_overrides(LONG)
+
+
+@pytest.fixture(scope="module")
+def expected(long: Config) -> str:
+    return simulate(long).result_hash
+
+
+def start(config: Config, folder: Path, *options: str) -> subprocess.Popen[str]:
+    toml = folder.parent / "long.toml"
+    toml.write_text(config.to_toml())
+    command = [sys.executable, "-m", "gyrify.cli", "run", str(toml), "--out", str(folder), *options]
+    return subprocess.Popen(
+        [sys.executable, "-S", "-c", START, *command],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def interrupt(process: subprocess.Popen[str], *signals: int, pause: float = 0.05) -> Interrupted:
+    begun = time.monotonic()
+    for number in signals:
+        process.send_signal(number)
+        time.sleep(pause)
+    stdout, stderr = process.communicate(timeout=30)
+    return Interrupted(process.returncode, time.monotonic() - begun, stdout, stderr)
+
+
+def await_increment(process: subprocess.Popen[str], folder: Path, number: int) -> None:
+    until = time.monotonic() + 120.0
+    while time.monotonic() < until:
+        assert process.poll() is None, process.communicate()
+        with contextlib.suppress(HistoryError):  # the journal is being made
+            if len(History.load(folder)) > number:
+                return
+        time.sleep(0.02)
+    raise TimeoutError
+
+
+def check(end: Interrupted, folder: Path) -> None:
+    """What holds whenever a run is interrupted."""
+    assert end.code == 130, end
+    assert end.latency < LONGEST, end
+    assert "Traceback" not in end.stderr
+    assert "Exception" not in end.stderr
+    if (folder / "journal.sqlite").exists() and end.stderr:
+        assert re.search(rf"gyrify resume {re.escape(str(folder))}$", end.stderr, re.MULTILINE), end
+
+
+@pytest.mark.parametrize(
+    "signals",
+    [(signal.SIGTERM,), (signal.SIGINT, signal.SIGINT)],
+    ids=["term", "int-twice"],
+)
+def test_interrupt_in_the_midst_of_growth(
+    long: Config, expected: str, tmp_path: Path, signals: tuple[int, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "run"
+    process = start(long, folder, "--json")
+    await_increment(process, folder, 10)
+    end = interrupt(process, *signals)
+    check(end, folder)
+    document = json.loads(end.stdout)
+    assert document == json.loads((folder / "summary.json").read_text())
+    assert document["status"] == History.load(folder).status == "interrupted"
+    assert 10 < len(History.load(folder)) < 300
+    assert not (folder / "run.owner.json").exists()
+    capsys.readouterr()
+    assert main(["resume", str(folder), "--json", "--quiet"]) == 0
+    resumed = json.loads(capsys.readouterr().out)
+    assert (resumed["status"], resumed["result_hash"]) == ("completed", expected)
+
+
+@pytest.mark.parametrize("moment", [0.15, 0.5, 1.0])
+def test_interrupt_while_starting(long: Config, tmp_path: Path, moment: float) -> None:
+    process = start(long, tmp_path / "run")
+    time.sleep(moment)
+    check(interrupt(process, signal.SIGINT), tmp_path / "run")
+
+
+@pytest.mark.slow
+def test_an_ignored_signal_stays_ignored(tiny: Config, tmp_path: Path) -> None:
+    toml = tmp_path / "tiny.toml"
+    toml.write_text(tiny.to_toml())
+    ignoring = START.replace("SIG_DFL", "SIG_IGN")
+    command = [
+        sys.executable,
+        "-m",
+        "gyrify.cli",
+        "run",
+        str(toml),
+        "--out",
+        str(tmp_path / "run"),
+        "--quiet",
+    ]
+    process = subprocess.Popen([sys.executable, "-S", "-c", ignoring, *command], stdout=subprocess.PIPE)
+    for _ in range(5):
+        time.sleep(0.2)
+        os.kill(process.pid, signal.SIGINT)
+    process.communicate()
+    assert process.returncode == 0
+
+
+def test_signals_are_as_before_after_a_run(tiny: Config, tmp_path: Path) -> None:
+    toml = tmp_path / "tiny.toml"
+    toml.write_text(tiny.to_toml())
+    before = [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)]
+    assert main(["run", str(toml), "--out", str(tmp_path / "run"), "--quiet"]) == 0
+    assert [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)] == before
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(20))
+def test_interrupt_at_random_moments(long: Config, expected: str, tmp_path: Path, seed: int) -> None:
+    chance, folder = random.Random(seed), tmp_path / "run"
+    process = start(long, folder)
+    time.sleep(chance.uniform(0.1, 8.0))
+    if process.poll() is not None:
+        process.communicate()
+        pytest.skip("the run was done")
+    signals = [chance.choice([signal.SIGINT, signal.SIGTERM]) for _ in range(chance.choice([1, 1, 2, 3]))]
+    end = interrupt(process, *signals, pause=chance.uniform(0.0, 0.3))
+    print(f"latency {end.latency:.2f} s")
+    check(end, folder)
+    if (folder / "journal.sqlite").exists():
+        assert main(["resume", str(folder), "--quiet"]) == 0
+        assert History.load(folder).result_hash == expected
