@@ -26,7 +26,8 @@ from gyrify.solve.types import FloatArray, IntArray
 
 # Largest residual of an eigenpair, ||K v - lambda M v|| over ||K|| ||v||.
 EIGEN_TOLERANCE = 1e-6
-_ARNOLDI_TOLERANCE = 1e-9
+_TOLERANCE = 1e-9
+_LANCZOS_VECTORS = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +109,9 @@ class Tangent:
     ) -> None:
         self._system, self.mass = system, mass
         self._data = system.assemble(evaluations, candidates)
-        self._factor: Factor | None = system.factorise_data(self._data)
+        self._pattern = system.pattern
+        self._factor: Factor = system.factorise_data(self._data)
+        self._number = system.factorizations
         self.n_negative = self._factor.n_negative
 
     @property
@@ -118,7 +121,7 @@ class Tangent:
 
     def matrix(self) -> sp.csr_array:
         """K on the free degrees of freedom, both triangles [Pa]."""
-        pattern = self._system.pattern
+        pattern = self._pattern
         upper = sp.csr_array((self._data, pattern.cols, pattern.indptr), shape=(self.mass.size,) * 2)
         return sp.csr_array(upper + sp.triu(upper, 1).T)
 
@@ -144,7 +147,7 @@ class Tangent:
         inverse = sla.LinearOperator((n, n), matvec=lambda x: root * factor.solve(root * x.ravel()))
         start = np.random.default_rng(0).standard_normal(n)
         try:
-            _, vectors = sla.eigsh(inverse, k=1, which="LA", v0=start, tol=_ARNOLDI_TOLERANCE)
+            _, vectors = sla.eigsh(inverse, k=1, which="LA", v0=start, ncv=_LANCZOS_VECTORS, tol=_TOLERANCE)
         except sla.ArpackNoConvergence as failure:
             raise _unfound(f"the Lanczos iteration did not converge ({failure})") from failure
         v = vectors[:, 0] / root
@@ -152,12 +155,14 @@ class Tangent:
 
     def _definite(self, guess: float) -> Factor:
         """Factor of K, or of K + tau M where K is not positive definite; later calls make it invalid."""
-        if self.n_negative == 0:
-            if self._factor is None:
-                self._factor = self._system.factorise_data(self._data)
-            return self._factor
-        self._factor = None
-        return shifted_factor(self._system, self._data, self.mass, -1.2 * guess)
+        if self._system.pattern is not self._pattern:
+            raise RuntimeError("the pattern has grown since this tangent was assembled")
+        if self.n_negative > 0:
+            return shifted_factor(self._system, self._data, self.mass, -1.2 * guess)
+        if self._number != self._system.factorizations:
+            self._factor = self._system.factorise_data(self._data)
+            self._number = self._system.factorizations
+        return self._factor
 
     def _checked(self, v: FloatArray) -> Eigenpair:
         """Eigenpair of a vector of unit mass, by its Rayleigh quotient."""
