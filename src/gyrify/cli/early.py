@@ -26,6 +26,7 @@ def quiet_interrupts() -> Iterator[None]:
 
 
 def ignore_interrupts() -> None:
-    """Let Ctrl-C do nothing from here on."""
+    """Let Ctrl-C and SIGTERM do nothing from here on."""
     if threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_IGN)

@@ -67,7 +67,8 @@ class Interrupts:
     ) -> None:
         self._over.set()
         for number, previous in self._previous.items():
-            signal.signal(number, previous)
+            # After one signal the process is about to end, and more of them would only garble that.
+            signal.signal(number, signal.SIG_IGN if self.requested else previous)
         if self._wake is not None:
             signal.set_wakeup_fd(-1)
             for end in self._wake:

@@ -103,6 +103,8 @@ def _carry_out(
                 print_json({"error": "HistoryError", "message": fault.message, "advice": fault.advice})
             return FAILED
     _warn(summary, history.fractions[-1], folder, quiet)
+    if interrupts.requested and summary["status"] != "interrupted":
+        complain("Interrupted, but growth had ended: everything is written.")
     if json:
         print_json(summary)
     elif summary["status"] != "interrupted":
