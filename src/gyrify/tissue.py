@@ -144,7 +144,7 @@ class Tissue:
         if self.patches is None:
             return None
         J_g = self.volume_growth(time)
-        weight = self.simplices.volumes * (J_g if self.config.growth.energy_per == "grown" else 1.0)
+        weight = self._counted(self.simplices.volumes, J_g)
         mean = self.patches.sums(weight * self.volume_ratio(u) / J_g) / self.patches.sums(weight)
         return np.asarray(self.kappa * (mean[self.patches.patch] - 1.0))
 
@@ -158,7 +158,9 @@ class Tissue:
         return ElasticEnergy(*material)
 
     def weight(self, kinematics: ElasticKinematics) -> FloatArray:
-        """Volume that energy densities are counted by [mm^2]; grown, so that det F_g is not lost."""
-        if self.config.growth.energy_per == "grown":
-            return kinematics.volumes * kinematics.J_g
-        return kinematics.volumes
+        """Volume that energy densities are counted by [mm^2]."""
+        return self._counted(kinematics.volumes, kinematics.J_g)
+
+    def _counted(self, volumes: FloatArray, J_g: FloatArray) -> FloatArray:
+        """Grown or reference volume, as the reading wants; grown, so that det F_g is not lost."""
+        return volumes * J_g if self.config.growth.energy_per == "grown" else volumes
