@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gyrify.errors import SolveError
+from gyrify.metrics import measure
 from gyrify.model import Slice
 from gyrify.solve.equilibrium import find_equilibrium
 from gyrify.solve.newton import Criterion
@@ -51,6 +52,21 @@ class SmoothState:
         if not self.problem.config.contact.enabled:
             return False
         return self.problem.contact_energy(self.u).evaluate(self.u, 0).value > 0.0
+
+    @property
+    def is_folded(self) -> bool:
+        """Whether the contour has gyri: the branch has then veered away from the smooth one."""
+        mesh, metrics = self.problem.mesh, self.problem.config.metrics
+        x = mesh.points + self.u
+        measures = measure(
+            x[mesh.contour],
+            x[mesh.interface],
+            metrics.closing_radius,
+            metrics.gyrus_prominence,
+            metrics.samples,
+            mesh.period,
+        )
+        return measures.n_gyri > 0
 
     def tangent(self, system: System) -> Tangent:
         """Exact stiffness of the state."""

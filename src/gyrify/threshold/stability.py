@@ -68,23 +68,29 @@ class StabilityScan:
                 break
         missing = [point.value for point in scanned if point.n_negative is None]
         if missing:
-            end = " The scan ends there." if lost else ""
+            shown = ", ".join(f"{value:.5g}" for value in missing[:5]) + (" …" if len(missing) > 5 else "")
+            end = " The scan ends there." if lost == _GIVE_UP else ""
             self.notes.append(
-                f"The smooth state is not found between {missing[0]:.6g} and {missing[-1]:.6g}: it ends, or "
-                f"veers into folds without a bifurcation.{end}"
+                f"There is no smooth state to be found at {shown}: it ends, or folds without a bifurcation.{end}"
             )
         return scanned
 
     def _state(self, value: float) -> SmoothState | None:
         """Smooth state from its neighbours, or else followed in growth; None where neither finds it."""
-        with suppress(SolveError):
-            return self._branch.at(value)
-        with suppress(SolveError):
-            problem, fraction = self._problem_at(value)
-            u = grown(problem, self._system, fraction, self._watch).u
-            self._branch.known[value] = SmoothState(value, problem, fraction, u)
-            return self._branch.known[value]
+        for find in (self._branch.at, self._grown_at):
+            with suppress(SolveError):
+                state = find(value)
+                if not state.is_folded:
+                    self._branch.known[value] = state
+                    return state
+                del self._branch.known[value]
         return None
+
+    def _grown_at(self, value: float) -> SmoothState:
+        problem, fraction = self._problem_at(value)
+        state = SmoothState(value, problem, fraction, grown(problem, self._system, fraction, self._watch).u)
+        self._branch.known[value] = state
+        return state
 
     def _note_contact(self, state: SmoothState) -> None:
         if state.is_in_contact and not any("Contact" in note for note in self.notes):
