@@ -46,11 +46,7 @@ class Tissue:
     def __init__(self, config: Config, mesh: Mesh | None = None) -> None:
         self.config = config
         self.mesh = build_mesh(config) if mesh is None else mesh
-        if self.has_axial_unknown and config.mesh.element == "mean_dilatation":
-            raise ConfigError(
-                "mesh.element = 'mean_dilatation' does not go with growth.out_of_plane = 'generalised'.",
-                "Choose mesh.element = 'linear' or 'quadratic'.",
-            )
+        self._refuse_what_has_no_axial_unknown()
         grey = self.mesh.region[self.simplices.cell] == GREY
         growth, material = config.growth, config.material
         self.rate = np.where(grey, growth.rate, growth.rate_white)
@@ -63,6 +59,20 @@ class Tissue:
     def has_axial_unknown(self) -> bool:
         """Whether F33 is an unknown: then the state has one row more than the mesh has points."""
         return self.config.growth.out_of_plane == "generalised"
+
+    def _refuse_what_has_no_axial_unknown(self) -> None:
+        if not self.has_axial_unknown:
+            return
+        if self.config.mesh.element == "mean_dilatation":
+            raise ConfigError(
+                "mesh.element = 'mean_dilatation' does not go with growth.out_of_plane = 'generalised'.",
+                "Choose mesh.element = 'linear' or 'quadratic'.",
+            )
+        if self.config.dissipation.kind == "kelvin_voigt":
+            raise ConfigError(
+                "dissipation.kind = 'kelvin_voigt' does not go with growth.out_of_plane = 'generalised'.",
+                "Choose dissipation.kind = 'drag' or 'none'.",
+            )
 
     @property
     def state_shape(self) -> tuple[int, int]:

@@ -64,6 +64,7 @@ class Mesh:
             self.interface,
             self.clamped,
             self.across,
+            self.patch,
         ):
             array.flags.writeable = False
 

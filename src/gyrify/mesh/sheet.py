@@ -13,6 +13,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from gyrify.errors import MeshError
 from gyrify.mesh.grading import Grading, layer_fractions
 from gyrify.mesh.mesh import GREY, WHITE, FloatArray, IntArray
 
@@ -100,6 +101,11 @@ def build_sheet(layers: Layers, cortical_share: float, unit: tuple[float, float]
     Returns
     -------
     Sheet
+
+    Raises
+    ------
+    MeshError
+        If there are fewer white layers than times the cortex is refined.
     """
     rng = np.random.default_rng(layers.seed)
     lines, columns, interface_row = _rows(layers, cortical_share)
@@ -166,12 +172,22 @@ def _rows(layers: Layers, cortical_share: float) -> tuple[FloatArray, IntArray, 
         white, cortex = _halved(white), _halved(cortex)
     for _ in range(layers.refine_cortex):
         cortex = _halved(cortex)
+    _require_transitions(white.size - 1, layers.refine_cortex)
     n_around = layers.n_around * 2**layers.refine
     columns = np.full(white.size + cortex.size - 1, n_around)
     columns[white.size - 1 :] = n_around * 2**layers.refine_cortex
     for level in range(1, layers.refine_cortex):
         columns[white.size - 1 - level] = n_around * 2 ** (layers.refine_cortex - level)
     return np.concatenate([white, cortex[1:]]), columns, white.size - 1
+
+
+def _require_transitions(n_white: int, refine_cortex: int) -> None:
+    """Each halving of the cortex takes one white layer, in which the columns double."""
+    if n_white < refine_cortex:
+        raise MeshError(
+            f"mesh.refine_cortex = {refine_cortex} needs as many white layers, and there are {n_white}.",
+            "Raise mesh.n_layers or mesh.refine, or lower mesh.refine_cortex or mesh.n_cortex_layers.",
+        )
 
 
 def _halved(lines: FloatArray) -> FloatArray:
