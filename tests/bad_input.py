@@ -215,7 +215,7 @@ def _line(case: Case) -> str:
 
 def own_lines(text: str) -> list[str]:
     """Return the lines of the page without those whose wording comes from a library."""
-    foreign = tuple(f"| {case.what} |" for case in CASES if case.foreign)
+    foreign = tuple(f"| {case.what} " for case in CASES if case.foreign)
     return [line for line in text.splitlines() if not line.startswith(foreign)]
 
 
