@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import brentq
@@ -24,6 +25,9 @@ IDEAL = {"mesh.node_jitter": 0.0, "dissipation.kind": "none", "stability.follow_
 _ZERO = 1e-4
 # The scan ends after so many values in a row without a smooth state.
 _GIVE_UP = 3
+_BISECTIONS = 8
+# Halvings of the step between neighbours of the scan, before a state is followed in growth instead.
+_HALVINGS = 3
 
 
 class StabilityScan:
@@ -52,32 +56,67 @@ class StabilityScan:
         return len(self._branch.known)
 
     def scan(self, values: Sequence[float]) -> list[Scanned]:
-        """Inertia at each value, as far as the smooth branch is found."""
+        """Inertia at each value, as far as the smooth branch is found from either end of the range."""
         self._start(values)
-        scanned, lost = [], 0
-        for value in values:
-            state = self._state(value)
-            if state is not None:
-                lost = 0
-                scanned.append(Scanned(value, state.tangent(self._system).n_negative))
-                self._note_contact(state)
-                continue
-            lost += 1
-            scanned.append(Scanned(value))
-            if lost == _GIVE_UP:
-                break
-        missing = [point.value for point in scanned if point.n_negative is None]
+        found = self._sweep(values)
+        if len(found) < len(values):
+            rest = self._sweep(values[: len(found) - 1 : -1])
+            found += rest[::-1]
+        scanned = self._approached(found)
+        missing = [
+            value for value in values if all(p.value != value or p.n_negative is None for p in scanned)
+        ]
         if missing:
             shown = ", ".join(f"{value:.5g}" for value in missing[:5]) + (" …" if len(missing) > 5 else "")
-            end = " The scan ends there." if lost == _GIVE_UP else ""
             self.notes.append(
-                f"There is no smooth state to be found at {shown}: it ends, or folds without a bifurcation.{end}"
+                f"No smooth state is found at {shown}: it ends, or folds without a bifurcation."
             )
         return scanned
 
+    def _sweep(self, values: Sequence[float]) -> list[Scanned]:
+        """Points in turn, until too many in a row have no smooth state."""
+        points: list[Scanned] = []
+        for value in values:
+            points.append(self._point(value))
+            if len(points) >= _GIVE_UP and all(p.n_negative is None for p in points[-_GIVE_UP:]):
+                break
+        return points
+
+    def _approached(self, points: Sequence[Scanned]) -> list[Scanned]:
+        """The points, and those tried between one that is known and a missing one, to see how it ends."""
+        scanned = list(points[:1])
+        for before, after in pairwise(points):
+            if before.n_negative == 0 and after.n_negative is None:
+                scanned += self._bisected(before, after)
+            if before.n_negative is None and after.n_negative == 0:
+                scanned += self._bisected(after, before)[::-1]
+            scanned.append(after)
+        return scanned
+
+    def _bisected(self, stable: Scanned, missing: Scanned) -> list[Scanned]:
+        """Stable states ever closer to a missing one, up to an unstable one between them."""
+        near, far, found = stable.value, missing.value, []
+        for _ in range(_BISECTIONS):
+            point = self._point(0.5 * (near + far))
+            if point.n_negative is None:
+                far = point.value
+                continue
+            found.append(point)
+            near = point.value
+            if point.n_negative > 0:
+                break
+        return found
+
+    def _point(self, value: float) -> Scanned:
+        state = self._state(value)
+        if state is None:
+            return Scanned(value)
+        self._note_contact(state)
+        return Scanned(value, state.tangent(self._system).n_negative)
+
     def _state(self, value: float) -> SmoothState | None:
         """Smooth state from its neighbours, or else followed in growth; None where neither finds it."""
-        for find in (self._branch.at, self._grown_at):
+        for find in (lambda at: self._branch.at(at, _HALVINGS), self._grown_at):
             with suppress(SolveError):
                 state = find(value)
                 if not state.is_folded:
