@@ -23,6 +23,8 @@ GROWTH_STEPS = 8
 _ITERATIONS = 10
 _CORRECTION = 0.5
 _HALVINGS = 7
+# Prominence of a gyrus over the cortical thickness.
+_GYRUS = 0.2
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,14 +57,17 @@ class SmoothState:
 
     @property
     def is_folded(self) -> bool:
-        """Whether the contour has gyri: the branch has then veered away from the smooth one."""
+        """Whether the contour has gyri: the branch has then veered away from the smooth one.
+
+        Undulations below a fifth of the cortical thickness are the shape of a smooth slice.
+        """
         mesh, metrics = self.problem.mesh, self.problem.config.metrics
         x = mesh.points + self.u
         measures = measure(
             x[mesh.contour],
             x[mesh.interface],
             metrics.closing_radius,
-            metrics.gyrus_prominence,
+            _GYRUS * self.problem.config.geometry.cortical_thickness,
             metrics.samples,
             mesh.period,
         )
