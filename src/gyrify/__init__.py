@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from gyrify.config import Config
+    from gyrify.convergence import Convergence, converge
     from gyrify.errors import (
         ConfigError,
         GyrifyError,
@@ -42,6 +43,7 @@ __version__ = "0.1.0"
 _HOMES = {
     "Config": "config",
     "ConfigError": "errors",
+    "Convergence": "convergence",
     "GyrifyError": "errors",
     "History": "store",
     "HistoryError": "errors",
@@ -53,6 +55,7 @@ _HOMES = {
     "Progress": "simulation",
     "SolveError": "errors",
     "Threshold": "threshold",
+    "converge": "convergence",
     "cortical_thickness": "metrics",
     "critical_growth": "threshold",
     "growth_ratio_from_scaling": "metrics",
@@ -70,6 +73,7 @@ _HOMES = {
 __all__ = [
     "Config",
     "ConfigError",
+    "Convergence",
     "GyrifyError",
     "History",
     "HistoryError",
@@ -82,6 +86,7 @@ __all__ = [
     "SolveError",
     "Threshold",
     "__version__",
+    "converge",
     "cortical_thickness",
     "critical_growth",
     "growth_ratio_from_scaling",

@@ -17,6 +17,7 @@ from gyrify import __version__
 from gyrify.cli import config, presets
 from gyrify.cli import run as run_commands
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, USAGE
+from gyrify.cli.converge import converge
 from gyrify.cli.early import ignore_interrupts
 from gyrify.cli.stored import export, verify
 from gyrify.cli.streams import complain, print_json
@@ -35,6 +36,7 @@ app.command(run_commands.run)
 app.command(run_commands.resume)
 app.command(verify)
 app.command(threshold)
+app.command(converge)
 app.command(export)
 app.command(presets.presets)
 app.command(config.app)

@@ -1,0 +1,101 @@
+"""Drives a study of convergence: plan, runs, verdicts."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from gyrify.config import Config
+from gyrify.convergence.plan import SUBJECTS, Subject, plan
+from gyrify.convergence.result import Convergence, Family, Level
+from gyrify.convergence.runs import complete_all
+from gyrify.errors import ConfigError
+from gyrify.store.faults import storage_faults
+
+Teller = Callable[[Level, int, int], None]
+
+
+def converge(
+    config: Config,
+    out: str | Path | None = None,
+    *,
+    levels: int = 3,
+    of: Sequence[Subject] | None = None,
+    workers: int = 1,
+    tolerance: float = 0.02,
+    tell: Teller | None = None,
+) -> Convergence:
+    """Refine mesh, increments and contact distance in turn, and judge what the metrics converge to.
+
+    Every level is a run of its own from the start of growth; nothing is transferred between meshes. A run
+    that is complete in its folder is not run again, and one that ended early is taken up where it ended.
+
+    Parameters
+    ----------
+    config : Config
+        Where every family starts: its coarsest level.
+    out : path, optional
+        Folder for the runs and the results; by default ``convergence/`` and the first 12 digits of the
+        configuration's hash.
+    levels : int
+        Runs per family, each twice as fine as the one before; three are needed for an order.
+    of : sequence of {"mesh", "increments", "contact"}, optional
+        What is refined; by default all that has a meaning for the configuration.
+    workers : int
+        Processes; 1 computes in this one. More need the usual ``if __name__ == "__main__"`` in a script.
+    tolerance : float
+        Largest relative error that counts as converged.
+    tell : callable, optional
+        Called with each run as it ends, the number of runs that have, and their total.
+
+    Returns
+    -------
+    Convergence
+        Also written to ``convergence.json`` and ``convergence.csv`` in the folder.
+
+    Raises
+    ------
+    ConfigError
+        If an argument is out of range.
+    HistoryError
+        If the folder cannot be written.
+    KeyboardInterrupt
+        At Ctrl-C; the same call continues.
+    """
+    begun = time.perf_counter()
+    if not 0.0 < tolerance < 1.0:
+        raise ConfigError(f"tolerance = {tolerance:g} is out of range (above 0, below 1).", "Try 0.02.")
+    if not 1 <= workers <= 256:
+        raise ConfigError(f"workers = {workers} is out of range (1 to 256).", "Try the number of cores.")
+    subjects = of if of is not None else [s for s in SUBJECTS if s != "contact" or config.contact.enabled]
+    families = plan(config, subjects, levels)
+    folder = default_folder(config) if out is None else Path(out)
+    runs = {c.config_hash: c for group in reversed(families.values()) for c in group}
+    with storage_faults(folder):
+        (folder / "runs").mkdir(parents=True, exist_ok=True)
+    known: list[Level] = []
+
+    def note(level: Level) -> None:
+        known.append(level)
+        if tell is not None:
+            tell(level, len(known), len(runs))
+
+    found = complete_all(list(runs.values()), folder / "runs", min(workers, len(runs)), note)
+    convergence = Convergence(
+        config,
+        tuple(
+            Family(subject, tuple(found[c.config_hash] for c in group), tolerance)
+            for subject, group in families.items()
+        ),
+        tolerance,
+        time.perf_counter() - begun,
+    )
+    with storage_faults(folder):
+        convergence.write(folder)
+    return convergence
+
+
+def default_folder(config: Config) -> Path:
+    """Folder of a study that is given none."""
+    return Path("convergence") / config.config_hash[:12]

@@ -1,0 +1,168 @@
+"""Pictures of a study of convergence: metrics against the resolution, and the folded shapes side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.ticker import FixedLocator, MaxNLocator, NullLocator
+from numpy.typing import NDArray
+
+from gyrify.convergence import METRICS, Convergence, Family, Level
+from gyrify.convergence.plan import resolution
+from gyrify.report.figures import COLOURS, save_figure
+from gyrify.store.history import History
+
+FloatArray = NDArray[np.float64]
+
+# Okabe and Ito's colours, told apart by every common colour vision; markers tell them apart too.
+HUES: Final = ("#0072B2", "#D55E00", "#009E73")
+MARKERS: Final = ("o", "s", "^")
+PANELS: Final = (
+    ("GI", ("gi_closing", "gi_hull")),
+    ("GI, exposed", ("gi_exposed",)),
+    ("gyri", ("n_gyri",)),
+    ("growth time", ("visible_growth_time", "onset_growth_time")),
+    ("sulcal depth [mm]", ("sulcal_depth_mm_max", "sulcal_depth_mm_mean")),
+    ("elastic energy [mJ/mm]", ("elastic_energy_mJ_per_mm",)),
+)
+_RESOLUTIONS: Final = {
+    "mesh": "distance of contour nodes [mm]",
+    "increments": "increment / duration of growth",
+    "contact": "contact distance [mm]",
+}
+_NAMES: Final = {metric.key: metric.name for metric in METRICS}
+
+
+def write_pictures(convergence: Convergence, folder: Path) -> list[Path]:
+    """Write ``<subject>-metrics.png`` and ``<subject>-shapes.png`` for every subject.
+
+    Parameters
+    ----------
+    convergence : Convergence
+        The study.
+    folder : Path
+        Where to.
+
+    Returns
+    -------
+    list of Path
+        The files.
+    """
+    files = []
+    for family in convergence.families:
+        if not any(level.is_complete for level in family.levels):
+            continue
+        for kind, draw in (("metrics", metrics_figure), ("shapes", shapes_figure)):
+            files.append(folder / f"{family.subject}-{kind}.png")
+            save_figure(draw(family), files[-1], dpi=200)
+    return files
+
+
+def metrics_figure(family: Family) -> Figure:
+    """Every metric against what is halved from level to level; dashed, the limit where there is an order."""
+    figure = Figure(figsize=(8.4, 4.8), layout="constrained", facecolor="white")
+    FigureCanvasAgg(figure)
+    for axes, (label, keys) in zip(figure.subplots(2, 3).ravel(), PANELS, strict=True):
+        _panel(axes, family, keys)
+        axes.set_title(label, fontsize=9, loc="left")
+    figure.supxlabel(f"{_RESOLUTIONS[family.subject]} (finer to the right)", fontsize=9)
+    return figure
+
+
+def shapes_figure(family: Family) -> Figure:
+    """Folded shapes of the levels side by side, at one scale."""
+    histories = [(level, History.load(level.folder)) for level in family.levels if level.is_complete]
+    names = [_title(level, family) for level, _ in histories]
+    return slices_figure([history for _, history in histories], names)
+
+
+def slices_figure(histories: Sequence[History], names: Sequence[str], columns: int = 4) -> Figure:
+    """Folded slices side by side, at one scale.
+
+    Parameters
+    ----------
+    histories : sequence of History
+        The runs; their last states are drawn.
+    names : sequence of str
+        What to write above each.
+    columns : int
+        Most slices in a row.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    width = min(columns, len(histories))
+    height = -(-len(histories) // width)
+    outlines = [_closed(history, history.contour()) for history in histories]
+    low = np.min([outline.min(axis=0) for outline in outlines], axis=0)
+    high = np.max([outline.max(axis=0) for outline in outlines], axis=0)
+    size = 2.6 * width, height * (0.45 + 2.6 * float((high[1] - low[1]) / (high[0] - low[0])))
+    figure = Figure(figsize=size, layout="constrained", facecolor="white")
+    FigureCanvasAgg(figure)
+    panels = figure.subplots(height, width, squeeze=False).ravel()
+    for axes in panels:
+        axes.set_axis_off()
+    pad = 0.02 * (high - low)
+    for axes, history, name in zip(panels, histories, names, strict=False):
+        _draw(axes, history)
+        axes.set(xlim=(low[0] - pad[0], high[0] + pad[0]), ylim=(low[1] - pad[1], high[1] + pad[1]))
+        axes.set_aspect("equal")
+        axes.set_title(name, fontsize=8, color=COLOURS["line"])
+    return figure
+
+
+def _panel(axes: Axes, family: Family, keys: Sequence[str]) -> None:
+    sizes = np.array([resolution(level.config, family.subject) for level in family.levels])
+    for key, hue, marker in zip(keys, HUES, MARKERS, strict=False):
+        verdict = family.verdicts[key]
+        values = np.array([np.nan if value is None else value for value in verdict.values])
+        axes.plot(sizes, values, marker=marker, color=hue, markersize=5, linewidth=1.2, label=_NAMES[key])
+        if verdict.limit is not None:
+            axes.axhline(verdict.limit, color=hue, linewidth=0.9, linestyle="--")
+    axes.set_xscale("log")
+    axes.invert_xaxis()
+    axes.xaxis.set_major_locator(FixedLocator(list(sizes)))
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set_xticks(sizes, [f"{size:.3g}" for size in sizes])
+    if keys == ("n_gyri",):
+        axes.yaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
+    axes.tick_params(labelsize=8)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.grid(True, axis="y", color="0.92", linewidth=0.7)
+    if len(keys) > 1:
+        axes.legend(fontsize=7, frameon=False)
+
+
+def _title(level: Level, family: Family) -> str:
+    gi, gyri = level.metrics["gi_closing"], level.metrics["n_gyri"]
+    return f"{level.name(family.subject)}\nGI {gi:.3f}, {gyri:.0f} gyri"
+
+
+def _closed(history: History, line: FloatArray) -> FloatArray:
+    """A line of the last state as a polygon; that of a strip is closed along the clamped side."""
+    period = history.mesh.period
+    if period is None:
+        return line
+    floor = float(history.mesh.points[history.mesh.clamped, 1].min())
+    end = line[:1] + np.array([[period, 0.0]])
+    return np.concatenate([line, end, [[end[0, 0], floor], [line[0, 0], floor]]])
+
+
+def _draw(axes: Axes, history: History) -> None:
+    """Fill cortex and white matter as the areas within the contour, the interface and the hole."""
+    x, mesh = history.points(), history.mesh
+    for points, colour in ((x[mesh.contour], COLOURS["grey"]), (x[mesh.interface], COLOURS["white"])):
+        outline = _closed(history, points)
+        line = outline[:-2] if mesh.period is not None else np.concatenate([points, points[:1]])
+        axes.fill(outline[:, 0], outline[:, 1], facecolor=colour, edgecolor="none")
+        axes.plot(line[:, 0], line[:, 1], color=COLOURS["line"], linewidth=0.5)
+    if mesh.period is None:
+        hole = x[mesh.clamped]
+        axes.fill(hole[:, 0], hole[:, 1], facecolor="white", edgecolor=COLOURS["line"], linewidth=0.4)
