@@ -13,7 +13,7 @@ from gyrify import Config, History, converge, measure_state, simulate, summarise
 from gyrify.convergence import METRICS, Convergence, runs
 from gyrify.convergence.measured import elastic_energy, measured, visible_time
 from gyrify.errors import ConfigError, SolveError
-from gyrify.report.convergence import metrics_figure, shapes_figure, write_pictures
+from gyrify.report.convergence import Shape, metrics_figure, shapes_figure, slices_figure, write_pictures
 from gyrify.run import Progress
 
 
@@ -190,3 +190,12 @@ def test_pictures_show_every_family_and_level(study: tuple[Convergence, Path]) -
         "48 × 6",
         "96 × 12",
     ]
+
+
+def test_a_strip_is_drawn_down_to_its_clamped_side(tiny: Config) -> None:
+    strip = tiny.replace(**{"geometry.shape": "strip", "growth.duration": 100.0, "solver.increments": 2})
+    shape = Shape.of(simulate(strip))
+    outline = shape.polygon(shape.contour)
+    assert outline[:, 1].min() == 0.0
+    assert np.ptp(outline[:, 0]) == pytest.approx(strip.geometry.length, rel=0.01)
+    assert len(slices_figure([shape, shape], ["one", "two"]).axes) == 2

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -37,6 +38,38 @@ _RESOLUTIONS: Final = {
     "contact": "contact distance [mm]",
 }
 _NAMES: Final = {metric.key: metric.name for metric in METRICS}
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """Lines of a deformed slice.
+
+    Attributes
+    ----------
+    contour, interface, clamped : (n, 2) float arrays
+        Positions along the lines, in order [mm].
+    period : float or None
+        Period in x [mm] of a strip, None for a ring.
+    """
+
+    contour: FloatArray
+    interface: FloatArray
+    clamped: FloatArray
+    period: float | None = None
+
+    @staticmethod
+    def of(history: History) -> Shape:
+        """Lines of the last state of a run."""
+        x, mesh = history.points(), history.mesh
+        return Shape(x[mesh.contour], x[mesh.interface], x[mesh.clamped], mesh.period)
+
+    def polygon(self, line: FloatArray) -> FloatArray:
+        """A line as a polygon; that of a strip is closed along the clamped side."""
+        if self.period is None:
+            return np.concatenate([line, line[:1]])
+        floor = float(self.clamped[:, 1].min())
+        end = line[:1] + np.array([[self.period, 0.0]])
+        return np.concatenate([line, end, [[end[0, 0], floor], [line[0, 0], floor]]])
 
 
 def write_pictures(convergence: Convergence, folder: Path) -> list[Path]:
@@ -77,18 +110,18 @@ def metrics_figure(family: Family) -> Figure:
 
 def shapes_figure(family: Family) -> Figure:
     """Folded shapes of the levels side by side, at one scale."""
-    histories = [(level, History.load(level.folder)) for level in family.levels if level.is_complete]
-    names = [_title(level, family) for level, _ in histories]
-    return slices_figure([history for _, history in histories], names)
+    levels = [level for level in family.levels if level.is_complete]
+    shapes = [Shape.of(History.load(level.folder)) for level in levels]
+    return slices_figure(shapes, [_title(level, family) for level in levels])
 
 
-def slices_figure(histories: Sequence[History], names: Sequence[str], columns: int = 4) -> Figure:
+def slices_figure(shapes: Sequence[Shape], names: Sequence[str], columns: int = 4) -> Figure:
     """Folded slices side by side, at one scale.
 
     Parameters
     ----------
-    histories : sequence of History
-        The runs; their last states are drawn.
+    shapes : sequence of Shape
+        The slices.
     names : sequence of str
         What to write above each.
     columns : int
@@ -98,11 +131,10 @@ def slices_figure(histories: Sequence[History], names: Sequence[str], columns: i
     -------
     matplotlib.figure.Figure
     """
-    width = min(columns, len(histories))
-    height = -(-len(histories) // width)
-    outlines = [_closed(history, history.contour()) for history in histories]
-    low = np.min([outline.min(axis=0) for outline in outlines], axis=0)
-    high = np.max([outline.max(axis=0) for outline in outlines], axis=0)
+    width = min(columns, len(shapes))
+    height = -(-len(shapes) // width)
+    outlines = np.concatenate([shape.polygon(shape.contour) for shape in shapes])
+    low, high = outlines.min(axis=0), outlines.max(axis=0)
     size = 2.6 * width, height * (0.45 + 2.6 * float((high[1] - low[1]) / (high[0] - low[0])))
     figure = Figure(figsize=size, layout="constrained", facecolor="white")
     FigureCanvasAgg(figure)
@@ -110,8 +142,8 @@ def slices_figure(histories: Sequence[History], names: Sequence[str], columns: i
     for axes in panels:
         axes.set_axis_off()
     pad = 0.02 * (high - low)
-    for axes, history, name in zip(panels, histories, names, strict=False):
-        _draw(axes, history)
+    for axes, shape, name in zip(panels, shapes, names, strict=False):
+        _draw(axes, shape)
         axes.set(xlim=(low[0] - pad[0], high[0] + pad[0]), ylim=(low[1] - pad[1], high[1] + pad[1]))
         axes.set_aspect("equal")
         axes.set_title(name, fontsize=8, color=COLOURS["line"])
@@ -145,24 +177,13 @@ def _title(level: Level, family: Family) -> str:
     return f"{level.name(family.subject)}\nGI {gi:.3f}, {gyri:.0f} gyri"
 
 
-def _closed(history: History, line: FloatArray) -> FloatArray:
-    """A line of the last state as a polygon; that of a strip is closed along the clamped side."""
-    period = history.mesh.period
-    if period is None:
-        return line
-    floor = float(history.mesh.points[history.mesh.clamped, 1].min())
-    end = line[:1] + np.array([[period, 0.0]])
-    return np.concatenate([line, end, [[end[0, 0], floor], [line[0, 0], floor]]])
-
-
-def _draw(axes: Axes, history: History) -> None:
+def _draw(axes: Axes, shape: Shape) -> None:
     """Fill cortex and white matter as the areas within the contour, the interface and the hole."""
-    x, mesh = history.points(), history.mesh
-    for points, colour in ((x[mesh.contour], COLOURS["grey"]), (x[mesh.interface], COLOURS["white"])):
-        outline = _closed(history, points)
-        line = outline[:-2] if mesh.period is not None else np.concatenate([points, points[:1]])
+    for points, colour in ((shape.contour, COLOURS["grey"]), (shape.interface, COLOURS["white"])):
+        outline = shape.polygon(points)
+        line = outline if shape.period is None else outline[:-2]
         axes.fill(outline[:, 0], outline[:, 1], facecolor=colour, edgecolor="none")
         axes.plot(line[:, 0], line[:, 1], color=COLOURS["line"], linewidth=0.5)
-    if mesh.period is None:
-        hole = x[mesh.clamped]
+    if shape.period is None:
+        hole = shape.clamped
         axes.fill(hole[:, 0], hole[:, 1], facecolor="white", edgecolor=COLOURS["line"], linewidth=0.4)
