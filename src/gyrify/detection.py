@@ -198,7 +198,8 @@ def locate_onset(
         eigenvalue(1.0)
     stable = max((share for share, (_, pair) in known.items() if pair.eigenvalue > 0.0), default=0.0)
     unstable = min((share for share, (_, pair) in known.items() if pair.eigenvalue <= 0.0), default=1.0)
-    nearest = min(known, key=lambda share: abs(known[share][1].eigenvalue))
+    ends = [share for share in (stable, unstable) if share in known]
+    nearest = min(ends, key=lambda share: abs(known[share][1].eigenvalue))
     low, high, at = (
         (start + share * (end - start)) * problem.config.growth.duration
         for share in (stable, unstable, nearest)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from gyrify.solve.types import FloatArray, IntArray
 # First step along a mode over the largest allowed, and how often an equilibrium may be left in a row.
 _FIRST_STEP = 1e-3
 _DEPARTURES = 20
+# A descent leads further than an increment does, and along a flat valley next to a bifurcation: it may take
+# so many times the iterations.
+_PATIENCE = 10
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,6 +89,7 @@ def settle(
         If no stable equilibrium is reached.
     """
     residual, stats = np.inf, Stats()
+    patient = replace(criterion, max_iterations=_PATIENCE * criterion.max_iterations)
     for departures in range(_DEPARTURES + 1):
         tangent = _tangent(total, u, system, mass, candidates)
         if departures > 0 and tangent.is_stable:
@@ -95,7 +99,7 @@ def settle(
             start = leave(total, u, mode, size)
         except SolveError:  # next to a singular state one side alone may lead down
             start = leave(total, u, -mode, size)
-        solution = minimise(total, start, system, criterion, candidates, watch, mass)
+        solution = minimise(total, start, system, patient, candidates, watch, mass)
         u, residual, stats = solution.u, solution.residual, stats + solution.stats
         if solution.result is not Result.CONVERGED:
             raise _lost(f"the descent from it failed: {solution.result.message}", solution.result.advice)
