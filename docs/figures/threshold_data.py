@@ -21,7 +21,7 @@ DATA = Path(__file__).with_name("thresholds.json")
 STIFFNESS = {"1/3": 1 / 3, "1/2.61": 1 / 2.61, "1/1.36": 1 / 1.36, "1": 1.0, "1.54": 1.54, "2": 2.0, "3": 3.0}
 MESHES = {"108x9": (108, 9, 3), "216x17": (216, 17, 6), "324x26": (324, 26, 9), "432x34": (432, 34, 12)}
 FINE = {"648x51": (648, 51, 18)}
-DRAG = (0.01, 0.03, 0.1, 0.3, 0.65, 1.3, 2.6, 5.2)
+DRAG = (0.01, 0.03, 0.1, 0.3, 0.65, 1.3, 2.6)
 
 
 def known() -> dict[str, Any]:
@@ -100,7 +100,7 @@ def _dragged(number: float, ratio: float) -> float:
         return problem.tangent(1.0, u, history.displacement(-2), system).lowest().eigenvalue
 
     # Beyond its threshold a path with little drag folds and is stable again: walk up to the first change.
-    low = 1.6
+    low = 1.2
     while eigenvalue(low + 0.04) > 0.0:
         low += 0.04
     return float(brentq(eigenvalue, low, low + 0.04, xtol=2e-4))
