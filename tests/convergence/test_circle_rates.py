@@ -58,7 +58,7 @@ def test_mean_dilatation_relieves_the_locking_of_uniform_growth() -> None:
 
 @pytest.mark.parametrize(("element", "order", "axial_order"), [("linear", 1.9, 1.8), ("quadratic", 2.8, 3.3)])
 def test_generalised_plane_strain_converges(element: str, order: float, axial_order: float) -> None:
-    """Displacement and the axial strain F33 - 1, which converges as the energy does: twice the order of H1."""
+    """Displacement and axial strain F33 - 1, which converges as the energy does: twice the order of H1."""
     found = errors(element, "cortex", LEVELS[element], "generalised")
     assert rates(found[:, 0])[0] >= order
     assert rates(found[:, 2])[0] >= axial_order

@@ -92,7 +92,7 @@ def test_quadratic_triangles_lock_where_their_diagonals_are_parallel() -> None:
 
 @pytest.mark.parametrize("family", [on_squares, on_rings])
 def test_quadratic_triangles_keep_their_rate_on_other_meshes(family) -> None:
-    """At least the optimal order: coarse meshes lose a factor of up to two and a half, fine ones regain it."""
+    """At least the optimal order: coarse meshes lose a factor of up to 2.5, fine ones regain it."""
     almost, tissue = family("quadratic", ALMOST), family("quadratic", 0.458)
     assert np.all(mean_rates(almost) >= np.array(OPTIMAL["quadratic"]) - 0.1)
     assert np.all(almost[-1] <= 2.3 * tissue[-1])
@@ -137,7 +137,7 @@ def pressure_errors(n: int, diagonals: str) -> tuple[float, float]:
 
 
 def test_the_load_is_the_stress_s() -> None:
-    """The deformation gradient is that of the map, the force that of the stress; both by central differences."""
+    """The deformation gradient is the map's and the force the stress's, by central differences."""
     solution, h = Manufactured(0.3), 1e-5
     places = np.random.default_rng(0).random((6, 2))
     force = np.zeros((6, 2))

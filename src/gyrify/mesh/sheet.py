@@ -141,12 +141,14 @@ def add_midside_nodes(sheet: Sheet) -> Sheet:
     first, second = edges.T
     step = sheet.along[second] - sheet.along[first]
     step -= np.round(step)
+    # from the end that comes first, so that a middle on the seam lies after the last column
+    start = sheet.along[np.where(step >= 0.0, first, second)]
     middle = sheet.depth.size + edge_of_cell.reshape(-1, 3)
     node_of_edge = {(int(a), int(b)): sheet.depth.size + i for i, (a, b) in enumerate(edges)}
     rows = tuple(_interleaved(row, node_of_edge) for row in sheet.rows)
     return Sheet(
         depth=np.concatenate([sheet.depth, 0.5 * (sheet.depth[first] + sheet.depth[second])]),
-        along=np.concatenate([sheet.along, sheet.along[first] + 0.5 * step]),
+        along=np.concatenate([sheet.along, start + 0.5 * np.abs(step)]),
         cells=np.concatenate([sheet.cells, middle], axis=1),
         region=sheet.region,
         patch=sheet.patch,
