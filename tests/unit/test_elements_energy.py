@@ -149,6 +149,5 @@ def test_lumped_areas_are_positive_and_sum_to_the_area(element: str) -> None:
     "refused", [{"mesh.element": "mean_dilatation"}, {"dissipation.kind": "kelvin_voigt"}]
 )
 def test_what_knows_no_axial_unknown_is_refused_with_it(refused: dict) -> None:
-    with pytest.raises(ConfigError, match="generalised") as refusal:
+    with pytest.raises(ConfigError, match=r"generalised.*(Try|Choose) "):
         tissue("linear", **{"growth.out_of_plane": "generalised", **refused})
-    assert refusal.value.advice
