@@ -34,4 +34,4 @@ $(VENV)/.test: $(VENV)/.venv pyproject.toml constraints.txt
 	touch $@
 
 clean:
-	rm -rf $(VENV)
+	rm -rf $(VENV) .venv-plain

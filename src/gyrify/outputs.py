@@ -11,20 +11,22 @@ from matplotlib.figure import Figure
 
 from gyrify.errors import HistoryError
 from gyrify.report.figures import folded_figure, save_figure
+from gyrify.report.mode import mode_figure
+from gyrify.solve.stability import Onset
 from gyrify.store.faults import storage_faults
 from gyrify.store.history import History
 from gyrify.store.vtkhdf import write_vtkhdf
 from gyrify.summary import summarise, write_metrics, write_summary
 
 
-def write_outputs(history: History, folder: Path) -> dict[str, Any]:
-    """Write ``summary.json``, ``metrics.csv``, ``folded.png`` and ``history.vtkhdf``, each by atomic rename.
+def write_outputs(history: History, folder: str | Path) -> dict[str, Any]:
+    """Write every derived file, each by atomic rename: summary, metrics, pictures, time series.
 
     Parameters
     ----------
     history : History
         The run, complete or not.
-    folder : Path
+    folder : path
         Run folder.
 
     Returns
@@ -37,22 +39,25 @@ def write_outputs(history: History, folder: Path) -> dict[str, Any]:
     HistoryError
         If the folder cannot be written; nothing is left half written.
     """
+    folder = Path(folder)
     summary = write_state(history, folder)
     with _whole_files(folder):
         write_metrics(history, folder / "metrics.csv")
         save_figure(folded_picture(history, summary), folder / "folded.png")
+        if history.onset is not None:
+            save_figure(onset_picture(history, history.onset), folder / "onset.png")
         write_vtkhdf(history, folder / "history.vtkhdf")
     return summary
 
 
-def write_state(history: History, folder: Path) -> dict[str, Any]:
+def write_state(history: History, folder: str | Path) -> dict[str, Any]:
     """Write ``summary.json`` alone, in a moment: what a folder should tell when there is no time for more.
 
     Parameters
     ----------
     history : History
         The run, complete or not.
-    folder : Path
+    folder : path
         Run folder.
 
     Returns
@@ -65,6 +70,7 @@ def write_state(history: History, folder: Path) -> dict[str, Any]:
     HistoryError
         If the folder cannot be written.
     """
+    folder = Path(folder)
     summary = summarise(history)
     with _whole_files(folder):
         write_summary(summary, folder / "summary.json")
@@ -102,5 +108,20 @@ def folded_picture(history: History, summary: dict[str, Any]) -> Figure:
         gi=summary["gi"]["closing"],
         n_gyri=summary["n_gyri"],
         title=title,
+        period=mesh.period,
+    )
+
+
+def onset_picture(history: History, onset: Onset) -> Figure:
+    """Picture of the mode along which the run first lost stability."""
+    mesh, n = history.mesh, history.mesh.n_points
+    return mode_figure(
+        mesh.points + onset.displacement[:n],
+        onset.vector[:n],
+        mesh.contour,
+        mesh.interface,
+        mesh.clamped,
+        title=f"Loss of stability at growth time {onset.growth_time:.5g}",
+        subtitle=f"mode {onset.mode_number}, wavelength {onset.wavelength:.3g} mm",
         period=mesh.period,
     )

@@ -67,6 +67,8 @@ class Run:
 
     def __init__(self, problem: Slice, journal: Journal, note: str = "") -> None:
         self.problem, self.journal, self.note = problem, journal, note
+        limits = problem.config.limits
+        self._limits = Watch(limits.wall_time, limits.memory)
         if len(journal) == 0:
             journal.append(State.reference(*problem.state_shape), 0.0)
 
@@ -93,8 +95,9 @@ class Run:
             If the disk is full.
         """
         self.problem.compile()
-        solver = linear_solver(self.problem.config.solver.linear_solver).name
-        self.journal.set_meta(status="running", reason="", advice="", stable="", linear_solver=solver)
+        self.journal.set_meta(
+            status="running", reason="", advice="", stable="", linear_solver=self._linear_solver()
+        )
         try:
             self._accept(tuple(observers), watch)
             last = self.journal.state(len(self.journal) - 1)
@@ -118,16 +121,30 @@ class Run:
             self._record("failed", reason, "Once its cause is removed, continue with `gyrify resume`.")
             raise
 
+    def _linear_solver(self) -> str:
+        """Library that solves; the one that the run began with, or its end would be another."""
+        solver = linear_solver(self.problem.config.solver.linear_solver).name
+        begun_with = self.journal.meta("linear_solver", solver)
+        if begun_with == solver:
+            return solver
+        last = self.journal.state(len(self.journal) - 1)
+        if 0 < last.position < self.problem.stepping.end:
+            raise HistoryError(
+                f"The run was begun with {begun_with}, but solver.linear_solver is now {solver}: "
+                "continued, it would not end with the same result.",
+                f"Resume where {begun_with} is installed, or run again.",
+            )
+        return begun_with if last.position > 0 else solver
+
     def _accept(self, observers: tuple[Observer, ...], watch: Watcher) -> None:
         """Store and tell every increment that the solver accepts."""
         problem, stepping = self.problem, self.problem.stepping
         state = self.journal.state(len(self.journal) - 1)
         start, begun = state.position / stepping.end, time.perf_counter()
-        limits = Watch(problem.config.limits.wall_time, problem.config.limits.memory)
 
         def look() -> None:
             watch()
-            limits()
+            self._limits()
 
         detector = Detector(problem, stepping, self.journal.onset is not None, look)
         inspect = (detector.inspect,) if problem.config.stability.detect else ()

@@ -90,7 +90,7 @@ def stored_run(run: str | Path, overrides: Mapping[str, object] | None = None) -
                 write_config(folder, config.to_toml())
             (folder / "summary.json").unlink(missing_ok=True)  # it told of an earlier end
         try:
-            yield Run(Slice(config), journal, note)
+            yield Run(Slice(config), journal, f"{note} {_changed_versions(journal)}".strip())
         finally:
             journal.settle()
 
@@ -174,3 +174,21 @@ def _changed(config: Config, overrides: Mapping[str, object]) -> Config:
             "Begin another run with `gyrify run`.",
         )
     return changed
+
+
+def _changed_versions(journal: Journal) -> str:
+    """What is no longer as it was when the run began, and may change its last digits."""
+    recorded, now = json.loads(journal.meta("versions", "{}")), versions()
+    changed = [
+        f"{name} {recorded.get(name, 'none')} -> {now.get(name, 'none')}" for name in {**recorded, **now}
+    ]
+    changed = [
+        text
+        for text, name in zip(changed, {**recorded, **now}, strict=True)
+        if recorded.get(name) != now.get(name)
+    ]
+    return (
+        f"The run was begun with other versions ({', '.join(changed)}): its end may differ."
+        if changed
+        else ""
+    )

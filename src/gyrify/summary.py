@@ -53,21 +53,30 @@ def volume_extremes(history: History, index: int = -1) -> tuple[float, float]:
 def metrics_rows(history: History) -> list[dict[str, Any]]:
     """One row of flat metrics per state, as in ``metrics.csv``."""
     times, fractions, residuals = history.growth_times, history.fractions, history.residuals
+    work = {
+        name: history.journal.column(name) for name in ("newton_iterations", "factorizations", "analyses")
+    }
     rows = []
     for index in range(len(history)):
-        min_J, min_J_elastic = volume_extremes(history, index)
+        measures, (min_J, min_J_elastic) = measure_state(history, index), volume_extremes(history, index)
         rows.append(
             {
                 "increment": index,
                 "growth_time": float(times[index]),
                 "growth_fraction": float(fractions[index]),
-                **measure_state(history, index).flat(),
+                **measures.flat(),
                 "min_J": min_J,
                 "min_J_elastic": min_J_elastic,
-                "residual": float(residuals[index]),
+                "nodes_per_wavelength": _nodes_per_wavelength(history, measures),
+                "solver_residual": float(residuals[index]),
+                **{f"solver_{name}": column[index] for name, column in work.items()},
             }
         )
     return rows
+
+
+def _nodes_per_wavelength(history: History, measures: Measures) -> float | None:
+    return history.mesh.contour.size / measures.n_gyri if measures.n_gyri else None
 
 
 def summarise(history: History) -> dict[str, Any]:
@@ -85,7 +94,6 @@ def summarise(history: History) -> dict[str, Any]:
     measures = measure_state(history)
     min_J, min_J_elastic = volume_extremes(history)
     stats = history.stats
-    n_contour = history.mesh.contour.size
     summary: dict[str, Any] = _without_infinities(
         {
             "status": history.status,
@@ -97,7 +105,7 @@ def summarise(history: History) -> dict[str, Any]:
             **measures.as_dict(),
             "min_J": min_J,
             "min_J_elastic": min_J_elastic,
-            "nodes_per_wavelength": n_contour / measures.n_gyri if measures.n_gyri else None,
+            "nodes_per_wavelength": _nodes_per_wavelength(history, measures),
             "onset": _onset(history),
             "stable": history.stable,
             "stability_note": _stability_note(history, measures.n_gyri),

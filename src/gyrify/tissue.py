@@ -12,7 +12,6 @@ from gyrify.energy.elastic import CellPattern, ElasticEnergy
 from gyrify.energy.kinematics import ElasticKinematics, Simplices
 from gyrify.energy.mean_dilatation import MeanDilatationEnergy, PatchPattern
 from gyrify.energy.term import FloatArray, IntArray
-from gyrify.errors import ConfigError
 from gyrify.mesh import GREY, Mesh
 from gyrify.meshing import build_mesh
 from gyrify.physics.growth import growth_stretch, growth_tensor, out_of_plane_growth
@@ -46,7 +45,6 @@ class Tissue:
     def __init__(self, config: Config, mesh: Mesh | None = None) -> None:
         self.config = config
         self.mesh = build_mesh(config) if mesh is None else mesh
-        self._refuse_what_has_no_axial_unknown()
         grey = self.mesh.region[self.simplices.cell] == GREY
         growth, material = config.growth, config.material
         self.rate = np.where(grey, growth.rate, growth.rate_white)
@@ -59,20 +57,6 @@ class Tissue:
     def has_axial_unknown(self) -> bool:
         """Whether F33 is an unknown: then the state has one row more than the mesh has points."""
         return self.config.growth.out_of_plane == "generalised"
-
-    def _refuse_what_has_no_axial_unknown(self) -> None:
-        if not self.has_axial_unknown:
-            return
-        if self.config.mesh.element == "mean_dilatation":
-            raise ConfigError(
-                "mesh.element = 'mean_dilatation' does not go with growth.out_of_plane = 'generalised'.",
-                "Choose mesh.element = 'linear' or 'quadratic'.",
-            )
-        if self.config.dissipation.kind == "kelvin_voigt":
-            raise ConfigError(
-                "dissipation.kind = 'kelvin_voigt' does not go with growth.out_of_plane = 'generalised'.",
-                "Choose dissipation.kind = 'drag' or 'none'.",
-            )
 
     @property
     def state_shape(self) -> tuple[int, int]:

@@ -13,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 
 from gyrify.config import Config
-from gyrify.errors import HistoryError
+from gyrify.errors import ConfigError, HistoryError
 from gyrify.reevaluation import Increment, reevaluated
 from gyrify.store.folder import JOURNAL
 from gyrify.store.history import History
@@ -102,7 +102,10 @@ def verify(run: str | Path) -> Verification:
             raise
         return Verification((Check("states", False, str(damaged)),))
     checks = [_check_states(history), _check_config(history, folder)]
-    summary = _read_summary(folder)
+    try:
+        summary = _read_summary(folder)
+    except HistoryError as damaged:
+        return Verification((*checks, Check("summary.json", False, str(damaged))))
     checks.append(_check_hash(history, summary))
     if not checks[0].passed:
         return Verification(tuple(checks))
@@ -119,11 +122,11 @@ def verify(run: str | Path) -> Verification:
 def _check_states(history: History) -> Check:
     """Every row there, undamaged, in order, finite, clamped where it must be."""
     mesh, stepping, name = history.mesh, history.slice.stepping, "states"
-    position = 0
+    position, shape = 0, history.slice.state_shape
     try:
         for number in range(len(history)):
             state = history.journal.state(number)
-            if state.u.shape != mesh.points.shape or not np.isfinite(state.u).all():
+            if state.u.shape != shape or not np.isfinite(state.u).all():
                 return Check(name, False, f"Increment {number} is not a finite displacement of this mesh.")
             if number > 0 and (state.span < 1 or state.position != position + state.span):
                 return Check(name, False, f"Increment {number} does not follow the one before it.")
@@ -141,7 +144,11 @@ def _check_config(history: History, folder: Path) -> Check:
     path, recorded = folder / "config.toml", history.config.config_hash
     if not path.is_file():
         return Check("configuration", True, "There is no config.toml to compare; the journal has its own.")
-    if Config.load(path).config_hash != recorded:
+    try:
+        found = Config.load(path).config_hash
+    except ConfigError as damaged:
+        return Check("configuration", False, damaged.message)
+    if found != recorded:
         return Check("configuration", False, "config.toml is not the configuration that the journal records.")
     return Check("configuration", True, f"config.toml and the journal agree on {recorded[:12]}.")
 

@@ -171,7 +171,7 @@ def test_values_on_the_command_line(text: str, value: object) -> None:
 
 @pytest.mark.parametrize(
     "arguments",
-    [["--help"], ["--version"], ["presets"], ["config", "show"], ["config", "check"], ["config", "schema"]],
+    [["--help"], ["--version"], ["presets"], ["config", "show"], ["config", "schema"]],
 )
 def test_nothing_heavy_is_imported(arguments: list[str]) -> None:
     command = [sys.executable, "-X", "importtime", "-m", "gyrify.cli", *arguments]

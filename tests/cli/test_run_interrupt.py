@@ -23,7 +23,7 @@ from gyrify.simulation import simulate
 from gyrify.store import History
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
-LONGEST = 2.0  # [s]
+LONGEST = 10.0  # a loaded machine is slow; a run that does not listen takes a minute
 # Long enough to be interrupted, cheap to resume.
 LONG = {"mesh.n_around": 48, "mesh.n_layers": 8, "mesh.n_cortex_layers": 3, "solver.increments": 300}
 # SIGINT as a terminal's child has it, whatever runs the tests.
@@ -89,8 +89,9 @@ def await_increment(process: subprocess.Popen[str], folder: Path, number: int) -
 def check(end: Interrupted, folder: Path) -> None:
     """What holds whenever a run is interrupted."""
     assert end.latency < LONGEST, end
-    assert "Traceback" not in end.stderr
-    assert "Exception" not in end.stderr
+    if folder.exists():  # until the command line is loaded, an interrupt is the interpreter's to report
+        assert "Traceback" not in end.stderr
+        assert "Exception" not in end.stderr
     if end.code == 0 or "everything is written" in end.stderr:  # it came when all was done
         assert json.loads((folder / "summary.json").read_text())["status"] == "completed"
         return

@@ -30,7 +30,6 @@ def compiled_files(cache: Path) -> set[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(reason="functions compiled inside others never find their cache again", strict=False)
 def test_a_second_process_compiles_nothing(tmp_path: Path) -> None:
     first = compiled_files(tmp_path)
     assert first

@@ -10,7 +10,9 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from gyrify.config import Config
 from gyrify.errors import ConfigError, HistoryError
+from gyrify.simulation import simulate
 from gyrify.store import History
 from gyrify.store.export import CSV_COLUMNS, export
 from gyrify.store.fields import fields
@@ -143,3 +145,11 @@ def test_a_path_that_cannot_be_written_is_named(folded: History, tmp_path: Path)
     (tmp_path / "file").write_text("")
     with pytest.raises(HistoryError, match="file"):
         export(folded, "csv", tmp_path / "file" / "x.csv")
+
+
+def test_quadratic_cells_keep_their_six_nodes(tiny: Config, tmp_path: Path):
+    history = simulate(tiny.with_overrides({"mesh.element": "quadratic", "solver.increments": 2}))
+    path, _ = export(history, "xdmf", tmp_path / "run.xdmf")
+    topology = next(ElementTree.parse(path).iter("Topology"))
+    assert topology.get("TopologyType") == "Triangle_6"
+    assert next(topology.iter("DataItem")).get("Dimensions") == f"{history.mesh.n_cells} 6"

@@ -10,7 +10,8 @@ import pytest
 
 from gyrify.mesh import GREY, WHITE
 from gyrify.report import folded_figure, save_figure
-from gyrify.report.figures import _boundary_loops, _round_length
+from gyrify.report.figures import _boundary_loops
+from gyrify.report.page import _round_length
 
 N = 96
 RADII = (20.0, 30.0, 40.0, 44.0)

@@ -102,6 +102,9 @@ def test_a_run_with_contact_passes_every_check(stored: Path):
         {"growth.law": "tangential", "growth.energy_per": "reference"},
         {"contact.enabled": False},
         {"growth.rate": 0.0},
+        {"growth.out_of_plane": "generalised"},
+        {"mesh.element": "quadratic"},
+        {"mesh.element": "mean_dilatation"},
         {"geometry.shape": "strip", "mesh.n_layers": 12},
     ],
     ids=lambda reading: ",".join(map(str, reading.values())),
@@ -184,10 +187,16 @@ def test_what_is_only_written_and_not_computed_may_change_in_the_configuration_f
     assert verify(copy).passed
 
 
-def test_a_damaged_summary_says_so(copy: Path):
+def test_a_damaged_summary_is_a_failed_check(copy: Path):
     (copy / "summary.json").write_text('{"status": ')
-    with pytest.raises(HistoryError, match=r"summary\.json is damaged"):
-        verify(copy)
+    verification = verify(copy)
+    assert failures(verification) == {"summary.json"}
+    assert "summary.json is damaged" in str(verification)
+
+
+def test_a_damaged_configuration_file_is_a_failed_check(copy: Path):
+    (copy / "config.toml").write_text("[geometry")
+    assert "configuration" in failures(verify(copy))
 
 
 def test_a_folder_without_a_run_is_refused(tmp_path: Path):

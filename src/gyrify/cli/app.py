@@ -22,7 +22,7 @@ from gyrify.cli.early import ignore_interrupts
 from gyrify.cli.stored import export, verify
 from gyrify.cli.streams import complain, print_json
 from gyrify.cli.threshold import threshold
-from gyrify.errors import ConfigError, GyrifyError, HistoryError
+from gyrify.errors import ConfigError, GyrifyError, HistoryError, MeshError
 
 app = App(
     name="gyrify",
@@ -80,4 +80,4 @@ def _report(error: GyrifyError, tokens: Sequence[str]) -> int:
     complain(str(error))
     if "--json" in tokens:
         print_json({"error": type(error).__name__, "message": error.message, "advice": error.advice})
-    return USAGE if isinstance(error, ConfigError | HistoryError) else FAILED
+    return USAGE if isinstance(error, ConfigError | HistoryError | MeshError) else FAILED

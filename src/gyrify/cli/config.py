@@ -46,14 +46,17 @@ def show(
 
 @app.command
 def check(config: ConfigPath = None, /, *, overrides: Overrides = DEFAULT, json: bool = False) -> None:
-    """Check a configuration without running it.
+    """Check a configuration, its mesh too, without running it.
 
     Parameters
     ----------
     json : bool
         Print one JSON document.
     """
+    from gyrify.meshing import build_mesh
+
     resolved = overrides.resolve(config)
+    build_mesh(resolved)
     if json:
         print_json({"valid": True, "config_hash": resolved.config_hash})
     else:

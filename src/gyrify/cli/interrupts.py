@@ -15,6 +15,7 @@ import socket
 import threading
 from collections.abc import Callable
 from pathlib import Path
+from shlex import quote
 from types import FrameType, TracebackType
 from typing import Final, Self
 
@@ -116,7 +117,7 @@ class Interrupts:
                 (self._folder / "run.owner.json").unlink()  # an orderly end, if an abrupt one
             said, advice = (
                 "Every accepted increment is stored.",
-                f"Continue with: gyrify resume {self._folder}",
+                f"Continue with: gyrify resume {quote(str(self._folder))}",
             )
         else:
             said, advice = "Nothing had been computed yet.", "Run it again."

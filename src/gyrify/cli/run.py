@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from contextlib import AbstractContextManager, suppress
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
@@ -143,7 +144,7 @@ def _warn(summary: dict[str, Any], fraction: float, folder: Path, quiet: bool) -
 
     if summary["status"] == "interrupted":
         complain(f"Interrupted at {fraction:.1%} of growth; every accepted increment is stored.")
-        complain(f"Continue with: gyrify resume {folder}")
+        complain(f"Continue with: gyrify resume {quote(str(folder))}")
     elif summary["status"] != "completed":
         complain(f"The run {summary['status']}: {summary['reason']} {summary['advice']}")
     if not quiet:

@@ -14,7 +14,7 @@ MAX_GROWTH: Final = 10.0
 
 def faults(config: Config) -> list[str]:
     """Return every broken condition of a configuration, in words."""
-    checks = (_layers, _white_matter, _cells, _growth, _increments, _branch)
+    checks = (_layers, _white_matter, _cells, _growth, _increments, _branch, _axial, _transitions)
     return [fault for check in checks if (fault := check(config))]
 
 
@@ -92,4 +92,31 @@ def _branch(config: Config) -> str:
     return (
         f'stability.follow_branch = true is not allowed with dissipation.kind = "{dissipation.kind}": what '
         'dissipation holds back is no equilibrium to leave. Try dissipation.kind = "none".'
+    )
+
+
+def _axial(config: Config) -> str:
+    if config.growth.out_of_plane != "generalised":
+        return ""
+    if config.mesh.element == "mean_dilatation":
+        return (
+            'growth.out_of_plane = "generalised" is not allowed with mesh.element = "mean_dilatation". '
+            'Try mesh.element = "quadratic" or "linear".'
+        )
+    if config.dissipation.kind == "kelvin_voigt":
+        return (
+            'growth.out_of_plane = "generalised" is not allowed with dissipation.kind = "kelvin_voigt": its '
+            'dashpots know no stretch along z. Try dissipation.kind = "drag".'
+        )
+    return ""
+
+
+def _transitions(config: Config) -> str:
+    mesh = config.mesh
+    white = (mesh.n_layers - mesh.n_cortex_layers) * 2**mesh.refine
+    if mesh.refine_cortex <= max(white, 0):
+        return ""
+    return (
+        f"mesh.refine_cortex = {mesh.refine_cortex} is not allowed: each time takes one of the {white} white "
+        "layers. Try at most that number, or more layers in mesh.n_layers."
     )

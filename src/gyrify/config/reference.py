@@ -33,7 +33,9 @@ Lengths are in mm, stresses in Pa, growth time in the units of the source.
 - Further conditions tie keys together: `mesh.n_cortex_layers` is below `mesh.n_layers`; the cortex is thinner
   than 0.95 of the narrowest wall (b · (1 − `hole_fraction`) for ellipse and circle, `depth` for the strip);
   at most 4 million cells; `growth.rate` × `growth.duration` is at most 10; `solver.min_increment` is at most
-  1/`solver.increments`; `stability.follow_branch` needs `stability.detect` and no dissipation.
+  1/`solver.increments`; `stability.follow_branch` needs `stability.detect` and no dissipation;
+  `growth.out_of_plane = "generalised"` goes with neither `mean_dilatation` cells nor `kelvin_voigt`;
+  `mesh.refine_cortex` is at most the number of white layers.
 - The configuration hash is the SHA-256 of the canonical JSON (sorted keys, no spaces, shortest exact floats)
   of every value outside `output` and `limits`.
 """

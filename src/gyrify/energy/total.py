@@ -83,15 +83,6 @@ class TotalEnergy:
                 return np.inf
         return total
 
-    def gradient(self, u: FloatArray) -> FloatArray:
-        """(n_points, n_dim) total gradient [Pa mm], clamped points included."""
-        total = np.zeros_like(u)
-        for term in self.terms:
-            gradient = term.evaluate(u, 1).gradient
-            if gradient is not None:
-                total += gradient
-        return total
-
     def evaluate(self, u: FloatArray, project_psd: bool) -> list[Evaluation]:
         """Each term with its Hessian, for the solver to sum on a pattern that holds them all."""
         return [term.evaluate(u, 2, project_psd) for term in self.terms]

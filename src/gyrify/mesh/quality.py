@@ -10,10 +10,6 @@ from gyrify.errors import MeshError
 from gyrify.mesh.mesh import FloatArray, Mesh
 
 LOWEST_QUALITY: Final = 0.02
-THIN_LAYERS: Final = (
-    "Thin layers need more points around: raise mesh.n_around, lower mesh.n_layers or "
-    "mesh.n_cortex_layers, or change geometry.cortical_thickness."
-)
 
 
 def triangle_quality(corners: FloatArray) -> FloatArray:
@@ -33,17 +29,38 @@ def triangle_quality(corners: FloatArray) -> FloatArray:
     return np.asarray(2.0 * np.sqrt(3.0) * double_area / np.square(edges).sum(axis=(1, 2)))
 
 
-def require_quality(mesh: Mesh, lowest: float = LOWEST_QUALITY, advice: str = THIN_LAYERS) -> None:
-    """Refuse a mesh with inverted cells or slivers; ``advice`` says what to change.
+def require_quality(mesh: Mesh, column: float, layers: FloatArray) -> None:
+    """Refuse a mesh with inverted cells or slivers, and say what to change.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    column : float
+        Width of a column of cells at the contour [mm].
+    layers : (n_layers,) float array
+        Thickness of the layers [mm].
 
     Raises
     ------
     MeshError
-        If the worst quality is below ``lowest``.
+        If the worst quality is below `LOWEST_QUALITY`.
     """
     worst = float(triangle_quality(mesh.cell_points[:, :3]).min())
-    if worst < lowest:
-        raise MeshError(
-            f"The mesh has cells of quality {worst:.3g} (1 is equilateral; at least {lowest:g} is needed).",
-            advice,
+    if worst >= LOWEST_QUALITY:
+        return
+    if column / layers.min() >= layers.max() / column:
+        reason = (
+            f"Columns {column:.3g} mm wide are too wide for layers of {layers.min():.3g} mm: raise "
+            "mesh.n_around or geometry.cortical_thickness, or lower mesh.n_layers or mesh.n_cortex_layers."
         )
+    else:
+        reason = (
+            f"Columns {column:.3g} mm wide are too narrow for layers of {layers.max():.3g} mm: lower "
+            "mesh.n_around, or raise mesh.n_layers."
+        )
+    raise MeshError(
+        f"mesh.n_around = {mesh.contour.size} gives cells of quality {worst:.3g} (1 is equilateral; at least "
+        f"{LOWEST_QUALITY:g} is needed).",
+        reason,
+    )

@@ -47,32 +47,44 @@ def elliptic_ring(
     radius = float(np.sqrt(a * b))
     white = radius * (1.0 - hole_fraction) - T
     sheet = build_sheet(layers, T / white, (white, T), 2.0 * np.pi * radius)
-    points = _bend(sheet, semi_axes, hole_fraction, T)
     mesh = Mesh(
-        points=points,
+        points=_bend(sheet, semi_axes, hole_fraction, T),
         cells=sheet.cells,
         region=sheet.region,
         contour=sheet.rows[-1],
         interface=sheet.rows[sheet.interface_row],
         clamped=sheet.rows[0],
-        across=_ellipse_normals(points[sheet.cells[:, :3]].mean(axis=1), semi_axes),
+        across=_normals(sheet, semi_axes, hole_fraction, T),
         patch=sheet.patch,
     )
-    require_quality(mesh)
+    lines = np.unique(sheet.depth[[row[0] for row in sheet.rows]])
+    thickness = np.diff(np.minimum(lines, 1.0) * white + np.maximum(lines - 1.0, 0.0) * T)
+    require_quality(mesh, 2.0 * np.pi * radius / sheet.rows[-1].size, thickness)
     return mesh
 
 
 def _bend(sheet: Sheet, semi_axes: tuple[float, float], hole_fraction: float, T: float) -> FloatArray:
     """(n_points, 2) points; the position along the sheet becomes an eccentric angle."""
-    a, b = semi_axes
     angle = 2.0 * np.pi * sheet.along
-    white, grey = np.minimum(sheet.depth, 1.0), np.maximum(sheet.depth - 1.0, 0.0)
-    along_a = hole_fraction * a + white * (a - T - hole_fraction * a) + grey * T
-    along_b = hole_fraction * b + white * (b - T - hole_fraction * b) + grey * T
+    along_a, along_b = _ellipse(sheet.depth, semi_axes, hole_fraction, T)
     return np.stack([along_a * np.cos(angle), along_b * np.sin(angle)], axis=1)
 
 
-def _ellipse_normals(points: FloatArray, semi_axes: tuple[float, float]) -> FloatArray:
-    """Unit outward normals of the ellipses, similar to the contour, through the points."""
-    normal = points / np.square(semi_axes)
+def _ellipse(
+    depth: FloatArray, semi_axes: tuple[float, float], hole_fraction: float, T: float
+) -> tuple[FloatArray, FloatArray]:
+    """Semi-axes [mm] of the ellipse at a depth: 0 is the hole, 1 the interface, 2 the contour."""
+    white, grey = np.minimum(depth, 1.0), np.maximum(depth - 1.0, 0.0)
+    a, b = (h + white * (axis - T - h) + grey * T for axis in semi_axes for h in [hole_fraction * axis])
+    return a, b
+
+
+def _normals(sheet: Sheet, semi_axes: tuple[float, float], hole_fraction: float, T: float) -> FloatArray:
+    """(n_cells, 2) unit outward normals of the ellipses through the middles of the cells."""
+    corners = sheet.cells[:, :3]
+    along = sheet.along[corners]
+    along = along[:, :1] + (along - along[:, :1] - np.round(along - along[:, :1]))
+    angle = 2.0 * np.pi * along.mean(axis=1)
+    along_a, along_b = _ellipse(sheet.depth[corners].mean(axis=1), semi_axes, hole_fraction, T)
+    normal = np.stack([np.cos(angle) / along_a, np.sin(angle) / along_b], axis=1)
     return np.asarray(normal / np.linalg.norm(normal, axis=1, keepdims=True))

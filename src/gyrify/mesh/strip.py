@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gyrify.errors import MeshError
-from gyrify.mesh.mesh import FloatArray, Mesh
+from gyrify.mesh.mesh import Mesh
 from gyrify.mesh.quality import require_quality
 from gyrify.mesh.sheet import Layers, build_sheet
 
@@ -63,18 +63,5 @@ def periodic_strip(length: float, depth: float, cortical_thickness: float, layer
         period=length,
     )
     levels = np.unique(height[np.concatenate(sheet.rows)])
-    require_quality(mesh, advice=_advice(length / sheet.rows[-1].size, np.diff(levels)))
+    require_quality(mesh, length / sheet.rows[-1].size, np.diff(levels))
     return mesh
-
-
-def _advice(column: float, layers: FloatArray) -> str:
-    """What to change where columns are too wide for the thinnest layer or too narrow for the thickest."""
-    if column / layers.min() >= layers.max() / column:
-        return (
-            f"Columns {column:.3g} mm wide are too wide for layers of {layers.min():.3g} mm: raise "
-            "mesh.n_around, or lower geometry.length, mesh.n_layers or mesh.n_cortex_layers."
-        )
-    return (
-        f"Columns {column:.3g} mm wide are too narrow for layers of {layers.max():.3g} mm: lower "
-        "mesh.n_around or geometry.depth, or raise geometry.length or mesh.n_layers."
-    )

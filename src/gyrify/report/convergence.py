@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from gyrify.convergence import METRICS, Convergence, Family, Level
 from gyrify.convergence.plan import resolution
-from gyrify.report.figures import COLOURS, save_figure
+from gyrify.report.figures import save_figure
+from gyrify.report.page import COLOURS
 from gyrify.store.history import History
 
 FloatArray = NDArray[np.float64]

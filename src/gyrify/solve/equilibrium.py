@@ -13,7 +13,7 @@ import numpy as np
 from gyrify.energy.term import Evaluation
 from gyrify.energy.total import TotalEnergy
 from gyrify.errors import SolveError
-from gyrify.solve.newton import SMALLEST_STEP, Criterion, largest_force
+from gyrify.solve.newton import SMALLEST_STEP, Criterion, free_gradient, largest_force
 from gyrify.solve.result import Result, Solution, Stats
 from gyrify.solve.system import System
 from gyrify.solve.types import FloatArray, IntArray
@@ -77,15 +77,6 @@ def find_equilibrium(
         u, evaluations, gradient = moved
     work = Stats(iteration, system.factorizations - before[0], system.analyses - before[1])
     return Solution(u, result, largest_force(gradient, system), work)
-
-
-def free_gradient(evaluations: list[Evaluation], system: System) -> FloatArray:
-    """(n_free,) sum of the gradients of all terms [Pa mm]."""
-    total = np.zeros(system.n_dofs)
-    for evaluation in evaluations:
-        if evaluation.gradient is not None:
-            total += evaluation.gradient.ravel()
-    return total[system.free]
 
 
 def _damped_step(

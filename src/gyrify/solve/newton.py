@@ -80,7 +80,7 @@ def minimise(
     while result is Result.MAX_NEWTON:
         watch()
         evaluations = total.evaluate(u, project_psd=False)
-        gradient = _free_gradient(evaluations, system)
+        gradient = free_gradient(evaluations, system)
         residual = largest_force(gradient, system)
         if residual <= criterion.force:
             result = Result.CONVERGED
@@ -106,7 +106,8 @@ def largest_force(gradient: FloatArray, system: System) -> float:
     return float(np.sqrt(np.square(forces.reshape(-1, system.n_dim)).sum(axis=1).max()))
 
 
-def _free_gradient(evaluations: Sequence[Evaluation], system: System) -> FloatArray:
+def free_gradient(evaluations: Sequence[Evaluation], system: System) -> FloatArray:
+    """(n_free,) sum of the gradients of all terms [Pa mm]."""
     total = np.zeros(system.n_dofs)
     for evaluation in evaluations:
         if evaluation.gradient is not None:

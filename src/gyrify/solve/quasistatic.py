@@ -156,6 +156,8 @@ def grow(
         If an increment fails at the smallest size; the message names the reason.
     """
     system = problem.system(state.couplings)
+    if state.index == 0:
+        state = replace(state, stats=state.stats + Stats(analyses=system.analyses))
     while state.position < stepping.end:
         state = inspect(state, _advance(problem, stepping, state, system, watch))
         yield state

@@ -151,8 +151,9 @@ def _write_xdmf(
             grid = ElementTree.SubElement(grids, "Grid", Name=f"increment {number}", GridType="Uniform")
             ElementTree.SubElement(grid, "Time", Value=repr(float(history.growth_times[number])))
             n_cells = str(history.mesh.n_cells)
+            kind_of_cell = "Triangle" if history.mesh.cells.shape[1] == 3 else "Triangle_6"
             topology = ElementTree.SubElement(
-                grid, "Topology", TopologyType="Triangle", NumberOfElements=n_cells
+                grid, "Topology", TopologyType=kind_of_cell, NumberOfElements=n_cells
             )
             _refer(topology, file["cells"])
             _refer(ElementTree.SubElement(grid, "Geometry", GeometryType="XYZ"), file["points"])

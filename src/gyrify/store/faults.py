@@ -6,6 +6,7 @@ import errno
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from shlex import quote
 from typing import Final
 
 from gyrify.errors import HistoryError
@@ -45,7 +46,9 @@ def _explained(error: OSError, folder: Path, lost: str) -> HistoryError:
     reason = error.strerror or str(error)
     what = f"{lost or f'The run folder {folder}'} cannot be written: {reason}."
     if error.errno in _FULL or "No space left" in reason:
-        return HistoryError(what, f"Free space on the disk, then continue with `gyrify resume {folder}`.")
+        return HistoryError(
+            what, f"Free space on the disk, then continue with `gyrify resume {quote(str(folder))}`."
+        )
     if error.errno in _BLOCKED:
         return HistoryError(what, "Choose a folder that you may write to, with --out.")
     if error.errno in _NOT_A_FOLDER:

@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from shlex import quote
 from typing import Final
 
 from gyrify.errors import HistoryError
@@ -13,7 +14,15 @@ from gyrify.store.faults import storage_faults
 from gyrify.store.lock import run_lock
 
 JOURNAL: Final = "journal.sqlite"
-RUN_FILES: Final = ("config.toml", JOURNAL, "history.vtkhdf", "metrics.csv", "summary.json", "folded.png")
+RUN_FILES: Final = (
+    "config.toml",
+    JOURNAL,
+    "history.vtkhdf",
+    "metrics.csv",
+    "summary.json",
+    "folded.png",
+    "onset.png",
+)
 
 
 @contextmanager
@@ -45,7 +54,8 @@ def new_folder(folder: Path, config: str, overwrite: bool) -> Iterator[str]:
         if (folder / JOURNAL).exists() and not overwrite:
             raise HistoryError(
                 f"The folder {folder} already holds a run.",
-                f"Replace it with --overwrite, continue it with `gyrify resume {folder}`, or choose another.",
+                f"Continue it with `gyrify resume {quote(str(folder))}`, replace it with --overwrite, "
+                "or choose another.",
             )
         with storage_faults(folder):
             for file in _leftovers(folder):

@@ -63,6 +63,9 @@ class History:
     def __len__(self) -> int:
         return len(self.journal)
 
+    def __getitem__(self, index: int) -> FloatArray:
+        return self.displacement(index)
+
     def __iter__(self) -> Iterator[FloatArray]:
         return (self.displacement(number) for number in range(len(self)))
 

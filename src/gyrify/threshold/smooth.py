@@ -62,7 +62,7 @@ class SmoothState:
         Undulations below a fifth of the cortical thickness are the shape of a smooth slice.
         """
         mesh, metrics = self.problem.mesh, self.problem.config.metrics
-        x = mesh.points + self.u
+        x = mesh.points + self.u[: mesh.n_points]
         measures = measure(
             x[mesh.contour],
             x[mesh.interface],
@@ -166,7 +166,7 @@ def grown(
     SolveError
         If the smooth branch is lost on the way.
     """
-    reference = SmoothState(0.0, problem, 0.0, np.zeros((problem.mesh.n_points, problem.mesh.n_dim)))
+    reference = SmoothState(0.0, problem, 0.0, np.zeros(problem.state_shape))
     branch = SmoothBranch(lambda time: (problem, time), reference, system, watch)
     state = reference
     for share in np.linspace(0.0, 1.0, GROWTH_STEPS + 1)[1:]:
