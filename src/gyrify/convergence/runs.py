@@ -114,7 +114,8 @@ def _in_pool(configs: Sequence[Config], folder: Path, workers: int) -> Iterator[
     with _one_thread(), ProcessPoolExecutor(workers, context, _begin_worker, (stop,)) as pool:
         futures: list[Future[Level]] = []
         try:
-            futures += [pool.submit(_complete_in_worker, config, folder) for config in reversed(configs)]
+            with _deaf_children():
+                futures += [pool.submit(_complete_in_worker, config, folder) for config in reversed(configs)]
             yield from (future.result() for future in as_completed(futures))
         except BrokenProcessPool as error:
             raise GyrifyError(
@@ -125,6 +126,19 @@ def _in_pool(configs: Sequence[Config], folder: Path, workers: int) -> Iterator[
             stop.set()  # only an interrupt or an error finds runs that still go on
             for future in futures:
                 future.cancel()
+
+
+@contextmanager
+def _deaf_children() -> Iterator[None]:
+    """Let processes that begin inside a ``with`` block ignore Ctrl-C from their first instruction on."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _begin_worker(stop: Event) -> None:
