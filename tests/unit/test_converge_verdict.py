@@ -29,7 +29,15 @@ def test_only_the_three_finest_levels_count() -> None:
 
 
 @pytest.mark.parametrize(
-    "values", [(1.0, 1.2, 1.1), (1.0, 1.1, 1.3), (1.0, 1.1, 1.195), (1.0, 1.0, 1.2), (1.0, 1.2, 1.2)]
+    "values",
+    [
+        (1.0, 1.2, 1.1),
+        (1.0, 1.1, 1.3),
+        (1.0, 1.1, 1.195),
+        (1.0, 1.0, 1.2),
+        (1.0, 1.2, 1.2),
+        (1.0, 1.2, 1.201),
+    ],
 )
 def test_without_a_monotone_approach_there_is_no_order_and_the_spread_is_the_error(
     values: tuple[float, float, float],

@@ -8,8 +8,8 @@ from dataclasses import asdict, dataclass
 from typing import Any, Final
 
 RULE: Final = (
-    "Error of the finest level: from three levels that approach a limit monotonically with an order p of at "
-    "least 0.5, 1.25 times the distance to the limit of Richardson's extrapolation; from three others, the "
+    "Error of the finest level: from three levels that approach a limit monotonically with an order p of 0.5 "
+    "to 4, 1.25 times the distance to the limit of Richardson's extrapolation; from three others, the "
     "largest difference among them; from two, three times their difference. A count has the largest "
     "difference among the two finest levels. Converged means an error of at most the tolerance, relative to "
     "the finest value or, for depths, to 0.1 mm if that is more (a count: no difference). The finest level, "
@@ -18,7 +18,8 @@ RULE: Final = (
 # Safety factors of the grid convergence index, with an order and without (Roache 1994).
 _SAFETY_WITH_ORDER: Final = 1.25
 _SAFETY_OF_TWO: Final = 3.0
-_LEAST_ORDER: Final = 0.5
+# Orders outside of this are no property of the elements but chance.
+_ORDERS: Final = (0.5, 4.0)
 # Differences below this, relative to the size of the value, are rounding and tolerance, and have no order.
 _NOISE: Final = 1e-9
 
@@ -115,14 +116,14 @@ def _missing(values: tuple[float | None, ...]) -> str:
 
 
 def observed_order(values: Sequence[float], scale: float) -> float | None:
-    """Order of the last three values, if they approach a limit monotonically and not too slowly."""
+    """Order of the last three values, if they approach a limit monotonically and at a credible pace."""
     if len(values) < 3:
         return None
     first, second = values[-2] - values[-3], values[-1] - values[-2]
     if min(abs(first), abs(second)) <= _NOISE * scale or first * second < 0.0:
         return None
     order = math.log2(first / second)
-    return order if order >= _LEAST_ORDER else None
+    return order if _ORDERS[0] <= order <= _ORDERS[1] else None
 
 
 def _finest(values: tuple[float | None, ...]) -> tuple[float, ...]:
