@@ -130,15 +130,15 @@ def _in_pool(configs: Sequence[Config], folder: Path, workers: int) -> Iterator[
 
 @contextmanager
 def _deaf_children() -> Iterator[None]:
-    """Let processes that begin inside a ``with`` block ignore Ctrl-C from their first instruction on."""
-    if threading.current_thread() is not threading.main_thread():
+    """Hold Ctrl-C back while processes begin: they inherit that, and lay it down once they ignore it."""
+    if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _begin_worker(stop: Event) -> None:
@@ -146,6 +146,8 @@ def _begin_worker(stop: Event) -> None:
     global _stop
     _stop = stop
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     parent = multiprocessing.parent_process()
     if parent is not None:
         sentinel = parent.sentinel
