@@ -67,9 +67,10 @@ def test_round_trip_is_exact(overrides: dict[str, Any]) -> None:
 @settings(max_examples=200, deadline=None)
 def test_any_text_is_read_or_refused(text: str) -> None:
     try:
-        Config.from_toml(text)
+        config = Config.from_toml(text)
     except ConfigError:
         return
+    assert Config.from_toml(config.to_toml()) == config
 
 
 @given(st.text(max_size=70) | st.from_regex(r"[-+.0-9eE/ ]{1,20}", fullmatch=True))

@@ -56,8 +56,10 @@ def converge(
         Show no progress.
     """
     resolved = overrides.resolve(config)
-    subjects = None if of is None else _subjects(of)
-    largest = 0.02 if tolerance is None else _number(tolerance)
+    subjects, largest = (
+        None if of is None else _subjects(of),
+        0.02 if tolerance is None else _number(tolerance),
+    )
     from gyrify.convergence import converge as study
     from gyrify.convergence.converge import default_folder
 
@@ -78,10 +80,7 @@ def converge(
     from gyrify.report.convergence import write_pictures
 
     write_pictures(found, folder)
-    if json:
-        print_json(found.as_dict())
-    else:
-        _report(found, folder)
+    print_json(found.as_dict()) if json else _report(found, folder)
     return _EXIT_CODES[found.status]
 
 

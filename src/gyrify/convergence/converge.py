@@ -28,16 +28,15 @@ def converge(
 ) -> Convergence:
     """Refine mesh, increments and contact distance in turn, and judge what the metrics converge to.
 
-    Every level is a run of its own from the start of growth; nothing is transferred between meshes. A run
-    that is complete in its folder is not run again, and one that ended early is taken up where it ended.
+    Every level is a run of its own; nothing is transferred between meshes. Complete runs in the folder are
+    not run again, and one that ended early is taken up where it ended.
 
     Parameters
     ----------
     config : Config
         Where every family starts: its coarsest level.
     out : path, optional
-        Folder for the runs and the results; by default ``convergence/`` and the first 12 digits of the
-        configuration's hash.
+        Folder for runs and results; by default ``convergence/`` and 12 digits of the configuration's hash.
     levels : int
         Runs per family, each twice as fine as the one before; three are needed for an order.
     of : sequence of {"mesh", "increments", "contact"}, optional
@@ -52,7 +51,7 @@ def converge(
     Returns
     -------
     Convergence
-        Also written to ``convergence.json`` and ``convergence.csv`` in the folder.
+        Also written to the folder, as JSON and CSV.
 
     Raises
     ------
@@ -69,11 +68,26 @@ def converge(
     if not 1 <= workers <= 256:
         raise ConfigError(f"workers = {workers} is out of range (1 to 256).", "Try the number of cores.")
     subjects = of if of is not None else [s for s in SUBJECTS if s != "contact" or config.contact.enabled]
-    families = plan(config, subjects, levels)
     folder = default_folder(config) if out is None else Path(out)
-    runs = {c.config_hash: c for group in reversed(families.values()) for c in group}
+    plans = plan(config, subjects, levels)
     with storage_faults(folder):
         (folder / "runs").mkdir(parents=True, exist_ok=True)
+    families = _complete(plans, folder / "runs", workers, tolerance, tell)
+    convergence = Convergence(config, families, tolerance, time.perf_counter() - begun)
+    with storage_faults(folder):
+        convergence.write(folder)
+    return convergence
+
+
+def _complete(
+    plans: dict[Subject, tuple[Config, ...]],
+    folder: Path,
+    workers: int,
+    tolerance: float,
+    tell: Teller | None,
+) -> tuple[Family, ...]:
+    """Every run that a family needs, each once, the finest begun first."""
+    runs = {c.config_hash: c for group in reversed(plans.values()) for c in group}
     known: list[Level] = []
 
     def note(level: Level) -> None:
@@ -81,19 +95,11 @@ def converge(
         if tell is not None:
             tell(level, len(known), len(runs))
 
-    found = complete_all(list(runs.values()), folder / "runs", min(workers, len(runs)), note)
-    convergence = Convergence(
-        config,
-        tuple(
-            Family(subject, tuple(found[c.config_hash] for c in group), tolerance)
-            for subject, group in families.items()
-        ),
-        tolerance,
-        time.perf_counter() - begun,
+    found = complete_all(list(runs.values()), folder, min(workers, len(runs)), note)
+    return tuple(
+        Family(subject, tuple(found[c.config_hash] for c in group), tolerance)
+        for subject, group in plans.items()
     )
-    with storage_faults(folder):
-        convergence.write(folder)
-    return convergence
 
 
 def default_folder(config: Config) -> Path:

@@ -7,6 +7,7 @@ import shapely
 from numpy.typing import ArrayLike
 
 from gyrify.metrics.contour import (
+    FloatArray,
     as_contour,
     edge_lengths,
     filled,
@@ -62,6 +63,13 @@ def measure(
     vertices, inner = as_contour(contour), as_contour(interface)
     if period is not None:
         return measure_strip(vertices, inner, period, closing_radius, gyrus_prominence, samples)
+    return _measure_ring(vertices, inner, closing_radius, gyrus_prominence, samples)
+
+
+def _measure_ring(
+    vertices: FloatArray, inner: FloatArray, closing_radius: float, gyrus_prominence: float, samples: int
+) -> Measures:
+    """Measure a closed contour."""
     crossing = not shapely.linearrings(vertices).is_simple
     tissue = filled(vertices) if crossing else shapely.Polygon(vertices)
     offset = offset_outline(tissue, closing_radius)

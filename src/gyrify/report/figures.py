@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gyrify.mesh import GREY, WHITE
 from gyrify.report.page import COLOURS, LINE_MM, OUTLINE, header, legend, line, page, scale_bar, write_header
-from gyrify.report.sheet import closed_sheet, periodic_sheet
+from gyrify.report.sheet import Sheet, closed_sheet, periodic_sheet
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -77,12 +77,19 @@ def folded_figure(
     slice_arrays = (x, triangles, tissue, outer, inner, closing_radius)
     sheet = closed_sheet(*slice_arrays) if period is None else periodic_sheet(*slice_arrays, period)
     text = header(title, _index_text(gi, n_gyri, closing_radius), width_mm)
+    holes = [x[[*loop, loop[0]]] for loop in _holes(triangles, outer)]
+    return _drawn(sheet, text, [sheet.floor] if sheet.is_periodic else holes, width_mm)
+
+
+def _drawn(
+    sheet: Sheet, text: list[tuple[str, int, str]], clamped: list[FloatArray], width_mm: float
+) -> Figure:
+    """Draw what a sheet holds, under a header."""
     figure, axes = page(sheet.low, sheet.high, width_mm, header_mm=2.8 + LINE_MM * len(text))
     _draw_tissues(axes, sheet.points, sheet.cells, sheet.region)
     # Below the contour, so that the outline shows where it leaves the tissue.
     for piece in sheet.exposed:
         axes.add_line(line(piece, **OUTLINE))
-    clamped = [sheet.floor] if sheet.is_periodic else [x[[*h, h[0]]] for h in _holes(triangles, outer)]
     for thin in (*clamped, sheet.interface):
         axes.add_line(line(thin, color=COLOURS["line"], linewidth=0.4))
     axes.add_line(line(sheet.contour, color=COLOURS["line"], linewidth=0.9))

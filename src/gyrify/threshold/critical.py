@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 from gyrify.config import Config
@@ -67,16 +68,28 @@ def critical_growth(
         If a limit of the configuration is reached.
     """
     begun = time.perf_counter()
-    visible = definition == "visible"
     _check(definition, level, tolerance)
-    values = scan_values(config, parameter, range, points, visible)
-    watch = Watch(config.limits.wall_time, config.limits.memory)
+    values = scan_values(config, parameter, range, points, definition == "visible")
+    found = _find(config, parameter, definition, values, level, tolerance or TOLERANCE[definition])
+    return replace(found, wall_s=time.perf_counter() - begun)
+
+
+def _find(
+    config: Config,
+    parameter: str,
+    definition: Definition,
+    values: Sequence[float],
+    level: float,
+    tolerance: float,
+) -> Threshold:
+    """Scan, and refine every change between neighbours of known state."""
+    visible, watch = definition == "visible", Watch(config.limits.wall_time, config.limits.memory)
     scan = (
         VisibleScan(config, parameter, level, watch) if visible else StabilityScan(config, parameter, watch)
     )
     scanned = scan.scan(values)
     crossings = tuple(
-        scan.crossing(below, above, tolerance or TOLERANCE[definition])
+        scan.crossing(below, above, tolerance)
         for below, above in pairwise(point for point in scanned if _is_known(point))
         if _is_beyond(below, level) != _is_beyond(above, level)
     )
@@ -95,7 +108,7 @@ def critical_growth(
         scan=tuple(scanned),
         level=level if visible else None,
         evaluations=scan.evaluations,
-        wall_s=time.perf_counter() - begun,
+        wall_s=0.0,
     )
 
 
