@@ -95,7 +95,9 @@ def test_ctrl_c_ends_every_process_and_the_same_command_continues(toml: str, tmp
     arguments = ["converge", toml, "--levels", "2", "--of", "increments", "--workers", "2", "--out", str(out)]
     arguments += ["--set", "solver.increments=600"]
     command = [sys.executable, "-m", "gyrify.cli", *arguments]
-    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    # A job in the background of a shell begins with Ctrl-C ignored; this one must listen.
+    listens = {"preexec_fn": lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)}
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True, **listens)
     deadline = time.monotonic() + 60.0
     while not list(out.glob("runs/*/journal.sqlite")) and time.monotonic() < deadline:
         time.sleep(0.05)
