@@ -95,7 +95,9 @@ def to_pyvista(history: History, index: int = -1) -> UnstructuredGrid:
     """
     pyvista = _library("pyvista")
     x = history.points(index)
-    grid = pyvista.UnstructuredGrid({pyvista.CellType.TRIANGLE: history.mesh.cells}, _in_space(x))
+    kinds = {3: pyvista.CellType.TRIANGLE, 6: pyvista.CellType.QUADRATIC_TRIANGLE}
+    cells = history.mesh.cells
+    grid = pyvista.UnstructuredGrid({kinds[cells.shape[1]]: cells}, _in_space(x))
     for name, values in fields(history, index).items():
         data = grid.point_data if name in POINT_FIELDS else grid.cell_data
         data[name] = _in_space(values) if values.ndim == 2 else values.reshape(len(values), -1).squeeze()

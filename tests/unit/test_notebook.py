@@ -83,6 +83,14 @@ def test_pyvista_grid_has_the_deformed_points_and_all_fields(history: History) -
     assert set(grid.cell_data["region"]) == {0.0, 1.0}
 
 
+def test_pyvista_grid_of_quadratic_cells_keeps_their_curved_edges(tiny: Config) -> None:
+    pyvista = pytest.importorskip("pyvista")
+    history = simulate(tiny.with_overrides({"mesh.element": "quadratic", "solver.increments": 2}))
+    grid = history.to_pyvista()
+    assert grid.n_cells == history.mesh.n_cells
+    assert set(grid.celltypes) == {int(pyvista.CellType.QUADRATIC_TRIANGLE)}
+
+
 @pytest.mark.parametrize(("library", "method"), [("pandas", "to_dataframe"), ("pyvista", "to_pyvista")])
 def test_a_missing_library_is_named(
     history: History, monkeypatch: pytest.MonkeyPatch, library: str, method: str
