@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from gyrify.outputs import write_outputs
     from gyrify.simulation import Progress, resume, simulate
     from gyrify.store import History
+    from gyrify.study import Study, read_results, run_study
     from gyrify.summary import measure_state, summarise
     from gyrify.threshold import Threshold, critical_growth
 
@@ -54,6 +55,7 @@ _HOMES = {
     "MeshError": "errors",
     "Progress": "simulation",
     "SolveError": "errors",
+    "Study": "study",
     "Threshold": "threshold",
     "converge": "convergence",
     "cortical_thickness": "metrics",
@@ -64,7 +66,9 @@ _HOMES = {
     "length_increase": "metrics",
     "measure": "metrics",
     "measure_state": "summary",
+    "read_results": "study",
     "resume": "simulation",
+    "run_study": "study",
     "simulate": "simulation",
     "summarise": "summary",
     "write_outputs": "outputs",
@@ -84,6 +88,7 @@ __all__ = [
     "MeshError",
     "Progress",
     "SolveError",
+    "Study",
     "Threshold",
     "__version__",
     "converge",
@@ -95,7 +100,9 @@ __all__ = [
     "length_increase",
     "measure",
     "measure_state",
+    "read_results",
     "resume",
+    "run_study",
     "simulate",
     "summarise",
     "write_outputs",

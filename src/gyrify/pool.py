@@ -1,4 +1,4 @@
-"""Work on independent items in processes of one thread each, or in this process, with results as they come."""
+"""Work on independent items in processes of one thread each, or in this one; results as they come."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor
 from concurrent.futures import wait as await_futures
 from concurrent.futures.process import BrokenProcessPool
@@ -33,7 +33,7 @@ def go_on() -> None:
 
 def each(
     work: Work[Item, Result], items: Sequence[Item], workers: int, lost: Callable[[Item], Result]
-) -> Iterator[Result]:
+) -> Generator[Result, None, None]:
     """Work on every item; results come as they are ready.
 
     Close the iterator (``contextlib.closing``) to end early: every process then ends at a safe place.
