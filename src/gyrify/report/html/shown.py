@@ -1,0 +1,138 @@
+"""The fields that a report shows: names, units and colours, and the colours' ranges."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final, Literal
+
+import numpy as np
+
+from gyrify.config.run_sections import OutputField
+from gyrify.solve.types import FloatArray
+from gyrify.store.fields import UNITS
+
+# Colours run between these quantiles, so that a few extreme cells do not wash out all others.
+_OUTER: Final = 0.005
+# A state that is nearly uniform is coloured over at least this part of the range of the whole run.
+_NARROWEST: Final = 1e-3
+
+
+@dataclass(frozen=True)
+class ShownField:
+    """A field of the report.
+
+    Attributes
+    ----------
+    name : str
+        As in `gyrify.store.fields`.
+    label : str
+        For people.
+    place : {"cell", "contour"}
+        Whether it has a value per cell or per point of the contour.
+    colours : {"sequential", "diverging"}
+        Diverging colours are for signed fields, with zero in the middle.
+    about : str
+        What it is, in one sentence.
+    """
+
+    name: OutputField
+    label: str
+    place: Literal["cell", "contour"]
+    colours: Literal["sequential", "diverging"]
+    about: str
+
+    @property
+    def unit(self) -> str:
+        """Unit; empty for a pure number."""
+        return UNITS[self.name].replace("-", "").replace("1/mm", "mm⁻¹").replace("Pa mm", "Pa·mm")
+
+
+SHOWN: Final = (
+    ShownField("growth_stretch", "growth stretch λ_g", "cell", "sequential", "Stretch by growth alone."),
+    ShownField("J", "volume ratio J", "cell", "sequential", "Current over reference volume, det F."),
+    ShownField("von_mises", "von Mises stress", "cell", "sequential", "Size of the deviatoric Cauchy stress."),
+    ShownField(
+        "mean_stress", "mean stress", "cell", "diverging", "A third of the trace of the Cauchy stress."
+    ),
+    ShownField(
+        "circumferential_stress",
+        "circumferential stress",
+        "cell",
+        "diverging",
+        "Normal Cauchy stress along the layers as they lie now; negative is compression.",
+    ),
+    ShownField(
+        "thickness",
+        "cortical thickness",
+        "contour",
+        "sequential",
+        "Shortest distance from the contour to the grey-white interface.",
+    ),
+    ShownField(
+        "curvature", "curvature", "contour", "diverging", "Of the contour: positive at crowns, negative in sulci."
+    ),
+    ShownField(
+        "contact_force", "contact force", "contour", "sequential", "Size of the force of self-contact on each point."
+    ),
+)
+
+
+def chosen(names: Sequence[OutputField]) -> tuple[ShownField, ...]:
+    """The shown fields of these names, in their order on the page."""
+    return tuple(field for field in SHOWN if field.name in names)
+
+
+def scalar(values: FloatArray) -> FloatArray:
+    """A field as one number each: a vector's size."""
+    return values if values.ndim == 1 else np.asarray(np.linalg.norm(values, axis=1))
+
+
+def describe(field: ShownField, values: FloatArray) -> dict[str, Any]:
+    """What a page says of a field, and the range of its colours.
+
+    Parameters
+    ----------
+    field : ShownField
+        The field.
+    values : (n_frames, n) float array
+        Its values.
+
+    Returns
+    -------
+    dict
+        With ``range`` [low, high] of the colours over all frames and ``ranges``, one for each frame.
+    """
+    whole = colour_range(values, field.colours)
+    least = _NARROWEST * (whole[1] - whole[0])
+    return {
+        "name": field.name,
+        "label": field.label,
+        "unit": field.unit,
+        "place": field.place,
+        "colours": field.colours,
+        "about": field.about,
+        "range": whole,
+        "ranges": [_widened(colour_range(row, field.colours), least) for row in values],
+    }
+
+
+def colour_range(values: FloatArray, colours: str) -> list[float]:
+    """Ends of the colour bar: outer quantiles; for signed fields the same on both sides of zero."""
+    finite = values[np.isfinite(values)]
+    if finite.size == 0:
+        return [-1.0, 1.0]
+    if colours == "diverging":
+        end = float(np.quantile(np.abs(finite), 1.0 - 2.0 * _OUTER)) or 1.0
+        return [-end, end]
+    low, high = (float(end) for end in np.quantile(finite, (_OUTER, 1.0 - _OUTER)))
+    if high > low:
+        return [low, high]
+    # Mostly one value (no contact yet, say): show what there is.
+    low, high = float(finite.min()), float(finite.max())
+    return [low, high] if high > low else [low - 0.5, high + 0.5]
+
+
+def _widened(ends: list[float], least: float) -> list[float]:
+    middle, half = 0.5 * (ends[0] + ends[1]), 0.5 * max(ends[1] - ends[0], least)
+    return [middle - half, middle + half]
