@@ -13,6 +13,7 @@ from gyrify.phenotype.rules import parse_rules
 POSITIVE = st.floats(1e-6, 1e6)
 ROWS = st.fixed_dictionaries(
     {
+        "gi_hull": st.one_of(st.floats(0.99, 1.2), st.floats(0.5, 1e3)),
         "gi_closing": st.one_of(st.floats(0.99, 1.2), st.floats(0.5, 1e3)),
         "n_gyri": st.integers(0, 200),
         "sulcal_depth_mm_mean": st.one_of(st.just(0.0), st.floats(0, 30)),
@@ -24,6 +25,7 @@ ROWS = st.fixed_dictionaries(
     }
 )
 NORMAL = {
+    "gi_hull": 1.25,
     "gi_closing": 1.2,
     "n_gyri": 19,
     "sulcal_depth_mm_mean": 4.0,

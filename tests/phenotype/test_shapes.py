@@ -16,6 +16,7 @@ from gyrify.phenotype import classify, grown_thickness, load_rules
     ("k", "depth", "power", "uniform", "label", "rule"),
     [
         (19, 0.2, 1, False, "smooth", "no folds to be seen"),
+        (19, 2.5, 1, False, "lissencephaly", "sulci of less than half the cortex"),
         (19, 2.5, 4, False, "lissencephaly", "sulci of less than half the cortex"),
         (6, 12.0, 20, False, "lissencephaly", "a third of the normal gyri"),
         (28, 6.0, 1, False, "polymicrogyria", "numerous small gyri"),
@@ -35,7 +36,7 @@ def test_drawn_shapes(k: int, depth: float, power: float, uniform: bool, label: 
 def test_a_circle_is_smooth_and_says_why() -> None:
     found = classify(waves(19, 0.0), THICKNESS)
     assert found.label == "smooth"
-    assert found.because.startswith("gi = 1 ")
+    assert found.because.startswith("hull = 1 ")
     assert found.numbers["gyri"] == found.numbers["depth"] == 0.0
 
 

@@ -11,6 +11,7 @@ from gyrify.errors import ConfigError
 from gyrify.metrics import Measures
 
 _NEEDED = (
+    "gi_hull",
     "gi_closing",
     "n_gyri",
     "sulcal_depth_mm_mean",
@@ -59,7 +60,7 @@ def shape_numbers(
     Returns
     -------
     dict
-        ``gi``, ``depth``, ``gyri``, ``spacing``, ``breadth``, ``flatness`` and ``crown_fundus`` [-]. Without
+        ``hull``, ``depth``, ``gyri``, ``spacing``, ``breadth``, ``flatness`` and ``crown_fundus`` [-]. Without
         gyri the spacing is the whole outline.
 
     Raises
@@ -75,7 +76,7 @@ def shape_numbers(
     )
     gyri = value["n_gyri"]
     return {
-        "gi": value["gi_closing"],
+        "hull": value["gi_hull"],
         "depth": value["sulcal_depth_mm_mean"] / thickness,
         "gyri": gyri / normal_gyri,
         "spacing": outline / max(gyri, 1.0) / thickness,

@@ -45,7 +45,7 @@ class Condition:
         return compare(numbers[self.number], self.limit)
 
     def text(self, numbers: Mapping[str, float]) -> str:
-        """The comparison with its value, such as ``gi = 1.002 ≤ 1.005``."""
+        """The comparison with its value, such as ``hull = 1.002 ≤ 1.005``."""
         return f"{self.number} = {numbers[self.number]:.4g} {_COMPARISONS[self.comparison][1]} {self.limit:g}"
 
 
