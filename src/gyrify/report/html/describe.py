@@ -63,24 +63,23 @@ def subtitle(config: Config) -> str:
 
 
 def numbers(summary: dict[str, Any]) -> list[list[Any]]:
-    """Label, value, unit and explanation of what the run came to."""
+    """Label, value, unit, decimals (None: as needed) and explanation of what the run came to."""
     gi, depth, thickness, onset = (
         summary[key] for key in ("gi", "sulcal_depth_mm", "thickness_mm", "onset")
     )
     closing = f"Contour over the outline of the closing with radius {gi['closing_radius_mm']:g} mm"
     found = [
-        ["GI, closing", gi["closing"], "", closing],
-        ["GI, hull", gi["hull"], "", "Contour over the perimeter of the convex hull"],
-        ["GI, exposed", gi["exposed"], "", "Contour over the part of it that lies on the closing's outline"],
-        ["gyri", summary["n_gyri"], "", "Maxima of the normal displacement from the smooth contour"],
-        ["deepest sulcus", depth["max"], "mm", "Distance of the deepest fundus to the closing's outline"],
-        ["cortex at crowns", thickness["crown"], "mm", "Mean shortest distance to the interface"],
-        ["cortex at fundi", thickness["fundus"], "mm", "Mean shortest distance to the interface"],
+        ["GI, closing", gi["closing"], "", 3, closing],
+        ["GI, hull", gi["hull"], "", 3, "Contour over the perimeter of the convex hull"],
+        ["GI, exposed", gi["exposed"], "", 3, "Contour over the part of it on the closing's outline"],
+        ["gyri", summary["n_gyri"], "", None, "Maxima of the normal displacement from the smooth contour"],
+        ["deepest sulcus", depth["max"], "mm", 2, "Distance of the deepest fundus to the closing's outline"],
+        ["cortex at crowns", thickness["crown"], "mm", 2, "Mean shortest distance to the interface"],
+        ["cortex at fundi", thickness["fundus"], "mm", 2, "Mean shortest distance to the interface"],
     ]
     if onset is not None:
-        found.append(
-            ["loss of stability", onset["growth_time"], "time", "Growth time at which the slice lost stability"]
-        )
+        lost = f"Growth time at which the slice lost stability. {summary['stability_note']}".strip()
+        found.append(["stability lost at time", onset["growth_time"], "", 1, lost])
     return found
 
 

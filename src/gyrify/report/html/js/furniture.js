@@ -4,10 +4,9 @@ function createColourBar(viewer, colours) {
   const title = element("div", { class: "bar-title" });
   const strip = element("div", { class: "bar-strip" });
   const labels = element("div", { class: "bar-labels" });
-  const note = element("div", { class: "bar-note" });
   const swatches = element("div", { class: "swatches" });
   const host = element("div", { class: "colour-bar", "aria-hidden": "true" }, title,
-    element("div", { class: "bar-body" }, strip, labels), note, swatches);
+    element("div", { class: "bar-body" }, strip, labels), swatches);
   let shown = "";
   const update = () => {
     const field = viewer.field();
@@ -18,10 +17,9 @@ function createColourBar(viewer, colours) {
     shown = key;
     title.textContent = isTissue ? "tissue" : field.unit ? `${field.label} [${field.unit}]` : field.label;
     show(strip.parentNode, !isTissue);
-    show(note, !isTissue);
     show(swatches, isTissue);
     if (isTissue) drawSwatches(swatches, colours.region);
-    else drawBar(strip, labels, note, colours[field.colours], limits, field);
+    else drawBar(strip, labels, colours[field.colours], limits);
   };
   viewer.drawn.listen(update);
   return host;
@@ -36,7 +34,7 @@ function drawSwatches(host, [white, grey]) {
   host.replaceChildren(swatch(grey, "grey matter"), swatch(white, "white matter"));
 }
 
-function drawBar(strip, labels, note, samples, limits, field) {
+function drawBar(strip, labels, samples, limits) {
   strip.style.background = cssGradient(samples, "to top");
   const [low, high] = limits;
   labels.replaceChildren(...ticks(low, high, 5).map((value) => {
@@ -44,8 +42,6 @@ function drawBar(strip, labels, note, samples, limits, field) {
     label.style.bottom = `${(100 * (value - low)) / (high - low)}%`;
     return label;
   }));
-  const part = field.colours === "diverging" ? "blue: negative, red: positive" : "";
-  note.textContent = part;
 }
 
 // A bar of a round length, about a quarter of the scene at most.

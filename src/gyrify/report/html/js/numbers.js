@@ -17,6 +17,10 @@ function brief(value, digits = 4) {
   return withMinus(String(Number(value.toPrecision(digits))));
 }
 
+function fixed(value, decimals) {
+  return value === null ? "–" : withMinus(value.toFixed(decimals));
+}
+
 function withUnit(text, unit) {
   return unit ? `${text}\u00a0${unit}` : text;
 }

@@ -12,7 +12,10 @@ async function createPanel(run, payloadId, colours, { field = "von_mises", isAct
     viewer.set({ field: name });
     describeScene();
   });
-  const mode = model.hasMode ? createModeSwitch(viewer, run.onset, () => player.toggle(false)) : null;
+  const mode = model.hasMode ? createModeSwitch(viewer, run.onset, (isOn) => {
+    player.toggle(false);
+    plots.mark(isOn ? run.onset.growth_time : model.times[player.frame]);
+  }) : null;
   const plots = createPlots(run.plots, {
     duration: run.duration, onset: run.onset && run.onset.growth_time, onSeek: (time) => player.seekTime(time),
   });
@@ -41,9 +44,9 @@ function layOut({ viewer, player, tooltip, pointer, choice, mode, plots, colours
     mode && mode.host);
   const missing = element("p", { class: "notice" }, "This browser offers no WebGL 2, which the scene needs.");
   const scene = element("div", { class: "scene" }, viewer.isAble ? viewer.canvas : missing,
-    createColourBar(viewer, colours), createScaleBar(viewer), createZoomButtons(pointer), tooltip.host);
+    createColourBar(viewer, colours), createScaleBar(viewer), createZoomButtons(pointer), mode && mode.bar, tooltip.host);
   return element("div", { class: "panel" },
     element("div", { class: "stage" },
-      element("div", { class: "toolbar" }, choice.host, options), scene, mode && mode.bar, player.host),
+      element("div", { class: "toolbar" }, choice.host, options), scene, player.host),
     plots.host);
 }

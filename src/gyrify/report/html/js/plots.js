@@ -1,6 +1,6 @@
 // Small plots against growth time with a common marker; a click or a drag moves it.
 
-const PLOT = { width: 360, height: 132, left: 46, right: 10, top: 8, bottom: 22 };
+const PLOT = { width: 360, height: 178, left: 46, right: 10, top: 8, bottom: 36 };
 const DASHES = ["", "5 3", "1.5 2.5", "8 3 2 3"];
 
 // `plots` of one run or, to compare, of several: each line may carry a `run` number.
@@ -81,8 +81,10 @@ function axes(x, y, range, duration) {
   }
   for (const time of ticks(0, duration, 5)) {
     const anchor = time === 0 ? "start" : time > 0.98 * duration ? "end" : "middle";
-    found.push(svg("text", { class: "tick", x: x(time), y: PLOT.height - 6, "text-anchor": anchor }, brief(time)));
+    found.push(svg("text", { class: "tick", x: x(time), y: PLOT.height - 20, "text-anchor": anchor }, brief(time)));
   }
+  const middle = PLOT.left + (PLOT.width - PLOT.left - PLOT.right) / 2;
+  found.push(svg("text", { class: "tick", x: middle, y: PLOT.height - 4, "text-anchor": "middle" }, "growth time"));
   return found;
 }
 

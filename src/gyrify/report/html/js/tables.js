@@ -24,13 +24,12 @@ function createNotices(run) {
       element("p", {}, `${run.reason} ${run.advice}`.trim() || "Everything below is of the states that it reached.")));
   }
   for (const warning of run.warnings) notices.push(element("div", { class: "notice" }, warning));
-  if (run.note && !run.warnings.includes(run.note)) notices.push(element("p", { class: "remark" }, run.note));
   return notices;
 }
 
 function createNumbers(run) {
-  return element("dl", { class: "numbers" }, run.numbers.map(([label, value, unit, about]) =>
-    element("div", { title: about }, element("dt", {}, label), element("dd", {}, brief(value),
+  return element("dl", { class: "numbers" }, run.numbers.map(([label, value, unit, decimals, about]) =>
+    element("div", { title: about }, element("dt", {}, label), element("dd", {}, decimals === null ? brief(value) : fixed(value, decimals),
       unit ? element("span", { class: "faint" }, ` ${unit}`) : null))));
 }
 
@@ -64,7 +63,8 @@ function pairs(rows) {
 
 function createSolver(run) {
   return section("Solution and versions", false, element("div", { class: "columns" },
-    element("div", {}, element("h3", {}, "Solution"), pairs(run.solver)),
+    element("div", {}, element("h3", {}, "Solution"), pairs(run.solver),
+      run.note ? element("p", { class: "remark" }, run.note) : null),
     element("div", {}, element("h3", {}, "Versions"), pairs(run.versions)),
     element("div", {}, element("h3", {}, "Hashes"), element("dl", { class: "hashes" }, run.hashes.map(([label, hash]) =>
       [element("dt", {}, label), element("dd", {}, element("code", {}, hash))])))));
