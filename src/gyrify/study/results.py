@@ -7,7 +7,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from gyrify.errors import HistoryError
+from gyrify.config import Config
+from gyrify.errors import ConfigError, HistoryError
+from gyrify.phenotype import classify, grown_thickness
 from gyrify.study.archive import Record
 from gyrify.study.definition import Point, value_of
 
@@ -22,6 +24,7 @@ _LEFT_OUT: Final = {*_IDENTITY, "versions", "seed", "result_hash", "solver_wall_
 # What an incomplete run has too.
 _OF_ANY_END: Final = ("growth_time", "solver_")
 _INT, _TEXT, _BOOL, _FLOAT = "int64", "string", "bool", "float64"
+# Columns that are always there, with their types; what else a summary holds comes after them.
 QUANTITIES: Final = {
     "growth_time": _FLOAT,
     "gi_hull": _FLOAT,
@@ -56,6 +59,8 @@ QUANTITIES: Final = {
     "solver_residual": _FLOAT,
     "solver_tolerance": _FLOAT,
     "solver_linear_solver": _TEXT,
+    "phenotype": _TEXT,
+    "phenotype_rule": _TEXT,
 }
 
 
@@ -101,7 +106,8 @@ def results_table(points: Sequence[Point], records: Mapping[str, Record]) -> Tab
     varied = list(dict.fromkeys(key for point in points for key in point.parameters))
     rows = [_row(point, records[point.key], varied) for point in points]
     names = list(dict.fromkeys([*_IDENTITY, *varied, *QUANTITIES, *(name for row in rows for name in row)]))
-    names = [name for name in names if name != "result_hash"] + ["result_hash"]
+    last = ("phenotype", "phenotype_rule", "result_hash")
+    names = [*(name for name in names if name not in last), *last]
     columns = {}
     for name in names:
         values = [row.get(name) for row in rows]
@@ -164,6 +170,7 @@ def _row(point: Point, record: Record, varied: Iterable[str]) -> dict[str, Any]:
         {key: value for key, value in summary.items() if key not in _LEFT_OUT and value is not None}
     )
     is_whole = record.status == "completed"
+    label, rule = _phenotype(quantities, point.config) if is_whole else (None, None)
     return {
         "key": point.key,
         **{name: getattr(record, name) for name in _IDENTITY[1:]},
@@ -173,8 +180,21 @@ def _row(point: Point, record: Record, varied: Iterable[str]) -> dict[str, Any]:
             for name, value in quantities.items()
             if name not in _LEFT_OUT and (is_whole or name.startswith(_OF_ANY_END))
         },
+        "phenotype": label,
+        "phenotype_rule": rule,
         "result_hash": summary.get("result_hash"),
     }
+
+
+def _phenotype(quantities: Mapping[str, Any], config: Config) -> tuple[str | None, str | None]:
+    """Label and rule; none for a strip, whose gyri are not those of a slice."""
+    if config.geometry.shape == "strip":
+        return None, None
+    try:
+        found = classify(quantities, grown_thickness(config))
+    except ConfigError:  # a metric is not finite
+        return None, None
+    return found.label, found.rule
 
 
 def _kind(name: str, values: Sequence[object]) -> DataType:
