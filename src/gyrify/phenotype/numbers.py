@@ -60,8 +60,8 @@ def shape_numbers(
     Returns
     -------
     dict
-        ``hull``, ``depth``, ``gyri``, ``spacing``, ``breadth``, ``flatness`` and ``crown_fundus`` [-]. Without
-        gyri the spacing is the whole outline.
+        ``hull``, ``depth``, ``gyri``, ``spacing``, ``breadth``, ``flatness`` and ``crown_fundus`` [-].
+        Without gyri the spacing is the whole outline.
 
     Raises
     ------
