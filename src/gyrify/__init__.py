@@ -32,6 +32,8 @@ if TYPE_CHECKING:
         measure,
     )
     from gyrify.outputs import write_outputs
+    from gyrify.report.animate import animate
+    from gyrify.report.plot import plot
     from gyrify.simulation import Progress, resume, simulate
     from gyrify.store import History
     from gyrify.study import Study, read_results, run_study
@@ -57,6 +59,7 @@ _HOMES = {
     "SolveError": "errors",
     "Study": "study",
     "Threshold": "threshold",
+    "animate": "report.animate",
     "converge": "convergence",
     "cortical_thickness": "metrics",
     "critical_growth": "threshold",
@@ -67,6 +70,7 @@ _HOMES = {
     "measure": "metrics",
     "measure_state": "summary",
     "read_results": "study",
+    "plot": "report.plot",
     "resume": "simulation",
     "run_study": "study",
     "simulate": "simulation",
@@ -91,6 +95,7 @@ __all__ = [
     "Study",
     "Threshold",
     "__version__",
+    "animate",
     "converge",
     "cortical_thickness",
     "critical_growth",
@@ -100,6 +105,7 @@ __all__ = [
     "length_increase",
     "measure",
     "measure_state",
+    "plot",
     "read_results",
     "resume",
     "run_study",
