@@ -1,4 +1,4 @@
-"""Equations as MathML, by docutils alone: no script, no font and no network, when building or when reading."""
+"""Equations as MathML, by docutils alone: no script, font or network, when building or when reading."""
 
 from __future__ import annotations
 
