@@ -151,7 +151,7 @@ def _draw_cells(
             dark = np.dot(to_rgb(colour), (0.299, 0.587, 0.114)) < 0.5
             ink = "white" if dark else "#1f1f1f"
             halo = [patheffects.withStroke(linewidth=1.5, foreground=colour)]
-            style = {"fontsize": 6, "ha": "center", "va": "center", "path_effects": halo}
+            style: dict[str, Any] = {"fontsize": 6, "ha": "center", "va": "center", "path_effects": halo}
             axes.text(cell.at[0], cell.at[1], text, color=ink, zorder=5, **style)
 
 
