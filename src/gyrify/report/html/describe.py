@@ -64,9 +64,7 @@ def subtitle(config: Config) -> str:
 
 def numbers(summary: dict[str, Any]) -> list[list[Any]]:
     """Label, value, unit, decimals (None: as needed) and explanation of what the run came to."""
-    gi, depth, thickness, onset = (
-        summary[key] for key in ("gi", "sulcal_depth_mm", "thickness_mm", "onset")
-    )
+    gi, depth, thickness, onset = (summary[key] for key in ("gi", "sulcal_depth_mm", "thickness_mm", "onset"))
     closing = f"Contour over the outline of the closing with radius {gi['closing_radius_mm']:g} mm"
     found = [
         ["GI, closing", gi["closing"], "", 3, closing],

@@ -184,5 +184,4 @@ def _field(field: ShownField, values: FloatArray, n_codes: int, payload: Payload
     return describe(field, values) | {
         "low": codes.low.tolist(),
         "step": codes.step.tolist(),
-        "half_step": codes.half_step,
     }

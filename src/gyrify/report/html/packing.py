@@ -40,11 +40,6 @@ class Coded:
     low: FloatArray
     step: FloatArray
 
-    @property
-    def half_step(self) -> float:
-        """Largest distance of a value from its code, over all rows."""
-        return 0.5 * float(self.step.max(initial=0.0))
-
 
 def coded(values: FloatArray, n_codes: int) -> Coded:
     """Code each row of values over its own range.

@@ -69,7 +69,13 @@ def page(document: Mapping[str, Any], payloads: Mapping[str, str], scripts: Sequ
         f'<script type="text/plain" id="{key}">{text}</script>\n' for key, text in payloads.items()
     )
     template = files("gyrify.report.html").joinpath("page.html").read_text(encoding="utf-8")
-    parts = {"POLICY": policy, "STYLE": style, "DOCUMENT": safe_json(document), "DATA": data, "SCRIPT": script}
+    parts = {
+        "POLICY": policy,
+        "STYLE": style,
+        "DOCUMENT": safe_json(document),
+        "DATA": data,
+        "SCRIPT": script,
+    }
     pieces = template.split("@@")
     return "".join(parts[piece] if number % 2 else piece for number, piece in enumerate(pieces))
 

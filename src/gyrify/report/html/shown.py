@@ -51,7 +51,9 @@ class ShownField:
 SHOWN: Final = (
     ShownField("growth_stretch", "growth stretch λ_g", "cell", "sequential", "Stretch by growth alone."),
     ShownField("J", "volume ratio J", "cell", "sequential", "Current over reference volume, det F."),
-    ShownField("von_mises", "von Mises stress", "cell", "sequential", "Size of the deviatoric Cauchy stress."),
+    ShownField(
+        "von_mises", "von Mises stress", "cell", "sequential", "Size of the deviatoric Cauchy stress."
+    ),
     ShownField(
         "mean_stress", "mean stress", "cell", "diverging", "A third of the trace of the Cauchy stress."
     ),
@@ -70,10 +72,18 @@ SHOWN: Final = (
         "Shortest distance from the contour to the grey-white interface.",
     ),
     ShownField(
-        "curvature", "curvature", "contour", "diverging", "Of the contour: positive at crowns, negative in sulci."
+        "curvature",
+        "curvature",
+        "contour",
+        "diverging",
+        "Of the contour: positive at crowns, negative in sulci.",
     ),
     ShownField(
-        "contact_force", "contact force", "contour", "sequential", "Size of the force of self-contact on each point."
+        "contact_force",
+        "contact force",
+        "contour",
+        "sequential",
+        "Size of the force of self-contact on each point.",
     ),
 )
 

@@ -71,14 +71,14 @@ function probe(viewer, px, py) {
     if (place < 0) return null;
     const k = place % model.lines.contour.length;
     const value = model.values(state.frame, field.name)[k];
-    return { field, value, x: points[2 * place], y: points[2 * place + 1], node: model.lines.contour[k] };
+    return { field, value, frame: state.frame, x: points[2 * place], y: points[2 * place + 1], node: model.lines.contour[k] };
   }
   const triangle = triangleAt(viewer, x, y);
   if (triangle < 0) return null;
   const cell = Math.floor(triangle / model.perCell);
   const isTissue = field === REGION || state.mode !== null;
   const value = isTissue ? null : model.values(state.frame, field.name)[cell];
-  return { field: isTissue ? REGION : field, value, x, y, cell, region: model.region[cell] };
+  return { field: isTissue ? REGION : field, value, frame: state.frame, x, y, cell, region: model.region[cell] };
 }
 
 // The sorted triangles are kept for as long as the shape is the same.
@@ -99,7 +99,7 @@ function createTooltip() {
     hide: () => show(host, false),
     show(found, px, py, width) {
       const { field } = found;
-      const { text, error } = field === REGION ? { text: tissue(found) } : exactly(found.value, field);
+      const { text, error } = field === REGION ? { text: tissue(found) } : exactly(found);
       const place = `x ${brief(found.x)}, y ${brief(found.y)} mm`;
       const what = found.node === undefined ? `cell ${found.cell} · ${tissue(found)}` : `contour node ${found.node}`;
       host.replaceChildren(
@@ -116,6 +116,6 @@ function createTooltip() {
   };
 }
 
-function exactly(value, field) {
-  return Number.isNaN(value) ? { text: "undefined", error: 0 } : measured(value, field.half_step);
+function exactly({ value, field, frame }) {
+  return Number.isNaN(value) ? { text: "undefined", error: 0 } : measured(value, field.step[frame] / 2);
 }

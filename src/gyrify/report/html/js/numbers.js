@@ -27,7 +27,8 @@ function withUnit(text, unit) {
 
 // A value with as many decimals as its precision deserves, and how far off it can be.
 function measured(value, halfStep) {
-  const size = Math.max(Math.abs(value), halfStep, 1e-300);
+  if (value === 0 && halfStep === 0) return { text: "0", error: 0 };
+  const size = Math.max(Math.abs(value), halfStep);
   const decimals = halfStep > 0 ? Math.ceil(-Math.log10(2 * halfStep)) : 6 - Math.floor(Math.log10(size));
   if (decimals > 9) return { text: withMinus(value.toExponential(4)), error: halfStep + 1e-5 * size };
   const shown = Math.min(Math.max(decimals, 0), 9);

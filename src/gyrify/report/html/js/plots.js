@@ -68,6 +68,7 @@ function valueRange(lines) {
   const values = lines.flatMap((line) => line.values).filter((value) => value !== null);
   if (values.length === 0) return [0, 1];
   const [low, high] = [Math.min(...values), Math.max(...values)];
+  if (low === 0 && high === 0) return [0, 1];
   // A flat line is drawn in the middle of a range that does not make noise of its rounding.
   const pad = Math.max(0.06 * (high - low), 0.01 * Math.abs(high), 1e-9);
   return [low === 0 ? 0 : low - pad, high + pad];
