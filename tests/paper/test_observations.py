@@ -24,7 +24,7 @@ FAILURES: list[tuple[str, Case, dict[str, Any], str]] = [
     ("P7", SOFTEST, {"label": "smooth"}, "smooth"),
     ("P8", HALF, {"label": "normal"}, "normal"),
     ("P9", Case(SOFT), {"crown_fundus": 1.2}, "crown/fundus 1.20 at E = 1/1.36"),
-    ("P9", Case(EQUAL), {"sharpness": 1.2}, "sharpness 1.20 at E = 1,"),
+    ("P9", Case(EQUAL), {"sharpness": 1.2}, "sharpness 1.20 at E = 1"),
     ("P10", Case(2.0), {"label": "normal"}, "normal"),
     ("P11", Case(SOFT, 36.0), {"gi": 1.2}, "GI goes from 1.290 to 1.200"),
     ("P11", Case(EQUAL, 360.0), {"gi": 4.0}, "rises faster"),

@@ -20,6 +20,7 @@ from gyrify.cli.animate import animate
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, USAGE
 from gyrify.cli.converge import converge
 from gyrify.cli.early import ignore_interrupts
+from gyrify.cli.paper import paper
 from gyrify.cli.plot import plot
 from gyrify.cli.report import report
 from gyrify.cli.stored import export, verify
@@ -44,6 +45,7 @@ app.command(threshold)
 app.command(converge)
 app.command(study)
 app.command(table)
+app.command(paper)
 app.command(export)
 app.command(report)
 app.command(plot)

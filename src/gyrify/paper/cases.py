@@ -50,7 +50,9 @@ class Case:
         }
 
     def __str__(self) -> str:
-        return f"E = {ratio_text(self.stiffness)}, G = {self.growth:.4g}, T = {self.thickness:g} mm"
+        text = f"E = {ratio_text(self.stiffness)}"
+        text += f", G = {self.growth:.4g}" if self.growth != STANDARD_GROWTH else ""
+        return text + (f", T = {self.thickness:g} mm" if self.thickness != STANDARD_THICKNESS else "")
 
 
 def ratio_text(ratio: float) -> str:

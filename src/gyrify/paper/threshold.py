@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
 
-from gyrify.paper.cases import AGREES, LOCATED, PAPER_THRESHOLD, STANDARD_GROWTH, Case
+from gyrify.paper.cases import AGREES, LOCATED, PAPER_THRESHOLD, STANDARD_GROWTH, Case, threshold_ends
 from gyrify.paper.verdict import Check, Rows, Verdict
 
 # Gyrification index above which folding is obvious.
@@ -94,7 +94,11 @@ def threshold_verdict(rows: Rows, stiffness: float) -> Verdict:
     if high <= least or low >= most:
         return Verdict(ours, (Check(False, f"{ours}, not within 5 % of {paper}"),))
     inside = least <= low * (1 + 1e-9) and high <= most * (1 + 1e-9)
-    return Verdict(ours, (Check(True if inside else None, ours),))
+    if inside:
+        return Verdict(ours, (Check(True, ours),))
+    ends = tuple(case for case in threshold_ends(stiffness) if case not in rows)
+    missing = ends or tuple(next_thresholds(rows, stiffness))
+    return Verdict(ours, (Check(None, f"not yet located: {ours}", missing),))
 
 
 def next_thresholds(rows: Rows, stiffness: float) -> list[Case]:

@@ -21,10 +21,13 @@ class Check:
         None where runs are missing that would decide it.
     sentence : str
         What was found.
+    missing : tuple of Case
+        Runs that would decide it, where it is open.
     """
 
     passed: bool | None
     sentence: str
+    missing: tuple[Case, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -47,6 +50,13 @@ class Verdict:
         """False where one check fails, None where one is open, else True."""
         found = [check.passed for check in self.checks]
         return False if False in found else None if None in found else True
+
+    @property
+    def missing(self) -> tuple[Case, ...]:
+        """Runs that would tell more; none once it is decided."""
+        if self.passed is not None:
+            return ()
+        return tuple(dict.fromkeys(case for check in self.checks for case in check.missing))
 
     @property
     def note(self) -> str:
@@ -78,8 +88,9 @@ def check(
     for case, row in found:
         if not row.is_complete:
             return Check(False, f"the run at {case} {row.status}: {row.reason}")
-    if len(found) < len(cases):
-        return Check(None, f"not run: {next(case for case in cases if case not in rows)}")
+    missing = tuple(case for case in cases if case not in rows)
+    if missing:
+        return Check(None, f"not run: {missing[0]}", missing)
     values = [row for _, row in found]
     return Check(test(*values), sentence(*values))
 
