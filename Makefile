@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN = $(VENV)/bin
 
-.PHONY: run test check slow mutants docs clean
+.PHONY: run test check slow mutants docs bench clean
 
 run: $(VENV)/.run
 	$(BIN)/gyrify run --preset reference-slice --out runs/reference-slice --overwrite
@@ -41,5 +41,9 @@ $(VENV)/.docs: $(VENV)/.venv pyproject.toml constraints.txt
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[fast,docs]"
 	touch $@
 
+# what it costs, alone and beside other libraries, in an environment of its own; BENCH=--all, --quick, ...
+bench: $(VENV)/.venv
+	$(BIN)/python benchmarks $(BENCH)
+
 clean:
-	rm -rf $(VENV) .venv-plain docs/_build
+	rm -rf $(VENV) .venv-plain benchmarks/.venv docs/_build

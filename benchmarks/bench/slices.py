@@ -1,0 +1,45 @@
+"""The slices that the benchmarks fold: `reference-slice`, whole or coarsened for a quick look."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+
+from gyrify import Config, History, simulate
+from gyrify.model import Slice
+
+# A slice that folds into contact in a fraction of a second, to try the benchmarks out.
+QUICK = {
+    "mesh.n_around": 144,
+    "mesh.n_layers": 8,
+    "mesh.n_cortex_layers": 3,
+    "solver.increments": 40,
+    "growth.duration": 600.0,
+}
+
+
+def configuration(quick: bool, overrides: Mapping[str, Any] | None = None) -> Config:
+    """`reference-slice` with other values where asked for."""
+    chosen = {**(QUICK if quick else {}), **(overrides or {})}
+    return Config.preset("reference-slice").with_overrides(chosen)
+
+
+def solvers() -> list[str]:
+    """Linear solvers of this machine, the fastest first."""
+    return ["pardiso", "superlu"] if find_spec("pypardiso") else ["superlu"]
+
+
+@cache
+def folded(quick: bool) -> History:
+    """A finished run, for the state it ends in."""
+    return simulate(configuration(quick))
+
+
+def folded_state(quick: bool) -> tuple[Slice, np.ndarray, float]:
+    """Problem, displacement [mm] and growth time of the folded slice."""
+    history = folded(quick)
+    return history.slice, history.state_vector(-1), history.config.growth.duration
