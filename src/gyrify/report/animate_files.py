@@ -13,6 +13,8 @@ from gyrify.report.animate_scene import Pixels
 
 # Colours of a GIF: enough for smooth edges beside a map of colours, few enough for small files.
 _COLOURS: Final = 192
+# Difference of channels up to which a colour is taken for one that is kept.
+_CLOSE: Final = 8
 # Constant quality of H.264: visually lossless for line art.
 _QUALITY: Final = "18"
 
@@ -85,9 +87,14 @@ def _palette(samples: Sequence[Pixels], colours: Sequence[Sequence[int]]) -> Any
 
     others = _COLOURS - len(colours)
     sample = Image.fromarray(np.concatenate(list(samples)))
-    found = sample.quantize(others, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).getpalette()
+    reduced = sample.quantize(others, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    kept = np.array(colours)
+    found = np.array(reduced.getpalette()[: 3 * others]).reshape(-1, 3)
+    # A mean of nearly white pixels would be found for white: what is close to a kept colour becomes that.
+    apart = np.abs(found[:, None] - kept).max(axis=2)
+    found = np.where(apart.min(axis=1, keepdims=True) <= _CLOSE, kept[apart.argmin(axis=1)], found)
     palette = Image.new("P", (1, 1))
-    palette.putpalette([*np.ravel(colours).tolist(), *(found or [])[: 3 * others]])
+    palette.putpalette(np.concatenate([kept, found]).ravel().tolist())
     return palette
 
 

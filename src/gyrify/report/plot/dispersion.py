@@ -24,7 +24,7 @@ from gyrify.theory import Annulus, SecondVariation, base_state, surface_limit
 from gyrify.theory.onset import scaled
 
 # Growth times that are scanned; modes up to waves of two cortical thicknesses.
-_TIMES: Final = 33
+_TIMES: Final = 17
 _MODES: Final = 26
 _SHORTEST: Final = 2.0
 
