@@ -7,84 +7,24 @@ simulation.py: half length 1, mu = 1, K = 5, rho = 0.01, growth over time 1, dt 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
+from time import process_time
 
 import numpy as np
-import scipy.sparse as sp
-import scipy.sparse.linalg as sla
 
+from bench.body import CROSSINGS, Body, stable_step
 from bench.figures import Figure, Figures
-from bench.peers.explicit import steps
 from bench.slices import configuration, folded
 from bench.timing import Sample, interleaved
-from gyrify import simulate
+from gyrify import History, measure_state, simulate
 from gyrify.energy.term import FloatArray
-from gyrify.model import Slice
+from gyrify.metrics import measure
 
-# Loading time of BrainGrowth in crossings of the half length by a shear wave; its step over h sqrt(rho / K).
-CROSSINGS, STEP = 10.0, 0.05
+# Time step of BrainGrowth over h sqrt(rho / K).
+STEP = 0.05
 SAFETY = 0.95
 # Part of the growth that is integrated for real, to see how far from quasi-static that loading is.
 GROWN = 0.5
-
-
-@dataclass(frozen=True, eq=False)
-class Body:
-    """A slice as a damped dynamic body of density 1 [mass/mm^2 per unit thickness].
-
-    Attributes
-    ----------
-    problem : Slice
-        The slice.
-    duration : float
-        Loading time [time of a unit density].
-    damping : float
-        Drag over mass [1/time], such that the drag number is that of the slice.
-    """
-
-    problem: Slice
-    duration: float
-    damping: float
-
-    @staticmethod
-    def of(problem: Slice) -> Body:
-        """Body that is loaded within `CROSSINGS`."""
-        config = problem.config
-        crossing = max(config.geometry.semi_axes) / np.sqrt(problem.mu.max())
-        duration = CROSSINGS * crossing
-        drag = config.dissipation.number * config.material.young_modulus / config.geometry.drag_length**2
-        return Body(problem, duration, drag * duration)
-
-    def advance(
-        self, number: int, dt: float, start: float, u: FloatArray, v: FloatArray
-    ) -> tuple[float, float]:
-        """Take steps from a time; elastic and kinetic energy at their end."""
-        problem, cells = self.problem, self.problem.simplices
-        free = np.zeros(u.shape, dtype=bool)
-        free.ravel()[problem.free] = True
-        rate = problem.rate * problem.config.growth.duration
-        return steps(
-            number, start, dt, self.duration, u, v, cells.cells, cells.gradients, cells.volumes, rate,
-            problem.mu, problem.kappa, problem.lumped_area, free, self.damping,
-        )  # fmt: skip
-
-
-def stable_step(problem: Slice, u: FloatArray, time: float, with_contact: bool) -> float:
-    """2 / omega_max of M^-1 K for unit density."""
-    terms = [problem.elastic_energy(problem.kinematics(time)).evaluate(u, 2)]
-    terms += [problem.contact_energy(u).evaluate(u, 2)] if with_contact else []
-    size = u.size
-    K = sp.csr_matrix((size, size))
-    for term in terms:
-        pattern = term.hessian.pattern
-        upper = sp.csr_matrix((term.hessian.values, (pattern.rows, pattern.cols)), shape=(size, size))
-        K = K + upper + sp.triu(upper, 1).T
-    scale = sp.diags_array(1.0 / np.sqrt(problem.free_mass))
-    free = K[problem.free][:, problem.free]
-    start = np.random.default_rng(0).normal(size=problem.free.size)
-    largest = sla.eigsh(scale @ free @ scale, k=1, which="LM", v0=start, return_eigenvectors=False)
-    return float(2.0 / np.sqrt(largest[0]))
 
 
 def dynamics(quick: bool) -> Figures:
@@ -94,6 +34,7 @@ def dynamics(quick: bool) -> Figures:
     picked = np.linspace(0, len(history) - 1, 5).astype(int)
     states = [(history.state_vector(int(i)), float(history.growth_times[i])) for i in picked]
     stable = [stable_step(problem, u, time, False) for u, time in states]
+    touching = stable_step(problem, *states[-1], True)
     run = Sample(tuple(simulate(configuration(quick)).wall_s for _ in range(1 if quick else 3)))
     step, contact = _costs(body, states[-1][0], 3 if quick else 9)
     steps_by_name = {
@@ -105,7 +46,7 @@ def dynamics(quick: bool) -> Figures:
         Figure.of("one step, elastic", step),
         Figure.of("contact forces of the folded slice", contact),
         Figure("stable step, folded, over that at the start", stable[-1] / stable[0]),
-        Figure("the same with contact", stable_step(problem, *states[-1], True) / stable[0]),
+        Figure("the same with contact", touching / stable[0]),
         Figure.of("gyrify: solve", run),
     ]
     for name, number in steps_by_name.items():
@@ -115,7 +56,29 @@ def dynamics(quick: bool) -> Figures:
             found.append(Figure(f"{name} step: total, {word}", seconds, "s", is_extrapolated=True))
         ratio = total["contact"] / run.median
         found.append(Figure(f"{name} step: over gyrify", ratio, "x", is_extrapolated=True))
-    return found + _lag(body, 0.9 * min(stable), quick)
+    least = 0.9 * min(*stable, touching)
+    return found + _lag(body, least, quick) + _folded(body, least, history, run)
+
+
+def _folded(body: Body, dt: float, history: History, run: Sample) -> Figures:
+    """The whole run explicitly, for real, at the smallest of the stable steps, beside gyrify's own."""
+    number, begun = int(np.ceil(body.duration / dt)), process_time()
+    u, kinetic = body.fold(number)
+    seconds, mesh, config = process_time() - begun, history.mesh, history.config.metrics
+    x = mesh.points + u
+    radius, prominence, samples = config.closing_radius, config.gyrus_prominence, config.samples
+    found = measure(x[mesh.contour], x[mesh.interface], radius, prominence, samples, mesh.period)
+    own = measure_state(history)
+    return [
+        Figure("measured run: steps", number),
+        Figure("measured run: processor time", seconds, "s"),
+        Figure("measured run: over gyrify", seconds / run.median, "x"),
+        Figure("measured run: kinetic over elastic energy at the end", kinetic),
+        Figure("measured run: gyrification index (closing)", round(found.gi_closing, 4)),
+        Figure("gyrify: gyrification index (closing)", round(own.gi_closing, 4)),
+        Figure("measured run: gyri", found.n_gyri),
+        Figure("gyrify: gyri", own.n_gyri),
+    ]
 
 
 def _costs(body: Body, u: FloatArray, repeats: int) -> tuple[Sample, Sample]:

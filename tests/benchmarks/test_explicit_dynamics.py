@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bench.dynamics import Body, stable_step
+from bench.body import Body, stable_step
 from bench.peers.explicit import add_forces
 
 from gyrify import simulate
@@ -54,3 +54,18 @@ def test_slow_loading_leads_where_the_quasi_static_run_leads(problem: Slice) -> 
     slow = simulate(config.with_overrides(part)).state_vector(-1)
     assert kinetic < 0.01 * elastic
     assert np.abs(u - slow).max() < 0.02 * np.abs(slow).max()
+
+
+def test_both_ways_to_take_steps_are_the_same_where_nothing_touches(problem: Slice) -> None:
+    body, number = Body.of(problem), 400
+    short = replace(body, duration=1e-3 * body.duration)
+    u, v = np.zeros(problem.state_shape), np.zeros(problem.state_shape)
+    short.advance(number, short.duration / number, 0.0, u, v)
+    folded, _ = short.fold(number)
+    assert np.abs(u).max() > 0.0
+    np.testing.assert_allclose(folded, u, rtol=1e-9, atol=1e-14)
+
+
+def test_an_unstable_step_is_reported(problem: Slice) -> None:
+    with pytest.raises(RuntimeError, match="fails at step"):
+        Body.of(problem).fold(60)
