@@ -76,6 +76,7 @@ def paper(
     base = resolve_config(preset=preset, set_=set_)
     reading = Reading(Mechanics.of(base), require_gi(gi or preset_about(preset).gi_definition))
     processes = _cores() if workers is None else workers
+    _require(processes, minutes)
     try:
         with (
             ends_are_interrupts(),
@@ -93,6 +94,16 @@ def paper(
         return INTERRUPTED
 
 
+def _require(workers: int, minutes: float) -> None:
+    from gyrify.errors import ConfigError
+    from gyrify.pool import MAX_WORKERS
+
+    if not 1 <= workers <= MAX_WORKERS:
+        raise ConfigError(f"workers = {workers} is out of range (1 to {MAX_WORKERS}).", "Try 2.")
+    if not 0 <= minutes < float("inf"):
+        raise ConfigError(f"minutes = {minutes:g} is out of range: it must be >= 0.", "Try 45.")
+
+
 def _one(bench: Bench, base: Config, reading: Reading, begun: float, seed: int, json: bool) -> int:
     """One reading, one seed."""
     from gyrify.paper.reproduce import reproduce
@@ -106,9 +117,8 @@ def _one(bench: Bench, base: Config, reading: Reading, begun: float, seed: int, 
         print_json(found.scoreboard.as_dict(wall_s))
     else:
         _show(found)
-        say(
-            f"{len(bench.records)} runs, {bench.computed} of them now, {wall_s:.0f} s. Files in {bench.folder}."
-        )
+        say(f"{len(bench.records)} runs, {bench.computed} of them now, {wall_s:.0f} s.")
+        say(f"Files in {bench.folder}.")
     return COMPLETED if any(row.is_complete for row in found.rows.values()) else FAILED
 
 
@@ -133,7 +143,8 @@ def _readings(
         complain(f"Now {_MORE_SEEDS}." if screening.is_complete else "Time is over: no seeds yet.")
     best = screening.candidates[:BEST] if screening.is_complete else ()
     ensembles = [repeat(bench, base, candidate.reading) for candidate in best]
-    bench.write()
+    if bench.records:
+        bench.write()
     files = write_readings(screening, ensembles, bench.folder)
     for number, ensemble in enumerate(ensembles, start=1):
         write_report(ensemble.members[0], bench.stored, bench.folder / f"best-{number}", figures=number == 1)

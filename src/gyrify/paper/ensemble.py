@@ -87,7 +87,9 @@ class Ensemble:
         return found
 
 
-def repeat(bench: Bench, base: Config, reading: Reading, seeds: Sequence[int] = SEEDS) -> Ensemble:
+def repeat(
+    bench: Bench, base: Config, reading: Reading, seeds: Sequence[int] = SEEDS, *, stability: bool = True
+) -> Ensemble:
     """Reproduce the paper with several seeds.
 
     Parameters
@@ -100,12 +102,14 @@ def repeat(bench: Bench, base: Config, reading: Reading, seeds: Sequence[int] = 
         The reading.
     seeds : sequence of int
         Seeds of the node jitter.
+    stability : bool
+        Whether the loss of stability is located too, which no seed changes.
 
     Returns
     -------
     Ensemble
     """
-    members = [reproduce(bench, base, reading, seed=seed, stability=seed == seeds[0]) for seed in seeds]
+    members = [reproduce(bench, base, reading, seed=seed, stability=stability) for seed in seeds]
     return Ensemble(reading, tuple(members))
 
 

@@ -55,6 +55,8 @@ def _critical(config: Config) -> str:
         found = critical_growth(config, "growth.ratio", "stability", _RANGE, points=_POINTS)
     except GyrifyError as failure:
         return f"not found ({failure.message})"
+    except ValueError:  # on a mesh so coarse that no state counts as smooth
+        return "not found (no smooth state)"
     if found.critical_value is None:
         return f"none up to {_RANGE[1]:g}"
     return f"{found.critical_value:.3f} (mode {found.mode_number})"
