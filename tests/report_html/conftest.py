@@ -79,7 +79,9 @@ class Browser:
     def __init__(self, chromium: Any, folder: Path) -> None:
         self._chromium, self._folder, self._contexts = chromium, folder, []
 
-    def open(self, text: str, *, wait: str = "Boolean(window.gyrify && gyrify.panel)", **options: Any) -> Opened:
+    def open(
+        self, text: str, *, wait: str = "Boolean(window.gyrify && gyrify.panel)", **options: Any
+    ) -> Opened:
         """Open a report from a file and wait until it is drawn."""
         file = self._folder / f"report-{len(self._contexts)}.html"
         file.write_text(text, encoding="utf-8")

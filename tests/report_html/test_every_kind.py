@@ -48,7 +48,9 @@ def test_a_run_of_one_state_is_shown(browser, tiny: Config) -> None:
     assert opened.run("gyrify.panel.player.slider.disabled")
     assert opened.page.get_by_label("play").is_disabled()
     opened.choose("J")
-    assert opened.hover(*map(float, history.points()[history.mesh.cells[0]].mean(axis=0))).startswith("1.0000")
+    assert opened.hover(*map(float, history.points()[history.mesh.cells[0]].mean(axis=0))).startswith(
+        "1.0000"
+    )
     assert opened.page.get_by_role("alert").is_visible()
     assert opened.errors == []
 

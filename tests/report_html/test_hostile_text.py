@@ -49,10 +49,14 @@ def test_the_policy_lets_nothing_in(browser, hostile: History) -> None:
     refused = "(f) => { try { f(); return false; } catch { return true; } }"
     assert opened.run(f"({refused})(() => {{ document.body.innerHTML = '<b>x</b>'; }})")
     assert opened.run("fetch('data:text/plain,x').then(() => false, () => true)")
-    assert opened.run(
-        "new Promise((done) => { const s = document.createElement('style'); s.textContent = 'h1 {color: red}';"
-        "document.head.append(s); done(getComputedStyle(document.querySelector('h1')).color); })"
-    ) != "rgb(255, 0, 0)"
+    assert (
+        opened.run(
+            "new Promise((done) => { const s = document.createElement('style'); "
+            "s.textContent = 'h1 {color: red}';"
+            "document.head.append(s); done(getComputedStyle(document.querySelector('h1')).color); })"
+        )
+        != "rgb(255, 0, 0)"
+    )
     assert all(url.startswith(("file:", "data:")) for url in opened.requests)
 
 

@@ -64,8 +64,8 @@ def test_values_are_coded_within_half_a_step(rng: np.random.Generator) -> None:
 
 def test_too_large_a_run_is_thinned_and_coarsened(folded: History) -> None:
     frames = frames_of(folded, 51)
-    whole, text = packed_frames(folded, frames)
-    tight, small = packed_frames(folded, frames, budget=len(text) // 3)
+    whole, text = packed_frames(folded.mesh, frames, None)
+    tight, small = packed_frames(folded.mesh, frames, None, budget=len(text) // 3)
     assert whole["indices"] == frames.indices
     assert len(small) <= len(text) // 3 * 4 // 3 + 4
     assert tight["fields"][0]["step"][-1] >= whole["fields"][0]["step"][-1]
@@ -107,7 +107,9 @@ def test_a_page_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
 def test_scripts_and_styles_are_small(file: Path) -> None:
     lines = file.read_text(encoding="utf-8").splitlines()
     assert len(lines) <= 300
-    assert not re.search(r"innerHTML|outerHTML|insertAdjacent|document\.write|\beval\b|https?://(?!www\.w3)", "\n".join(lines))
+    assert not re.search(
+        r"innerHTML|outerHTML|insertAdjacent|document\.write|\beval\b|https?://(?!www\.w3)", "\n".join(lines)
+    )
     starts = [k for k, line in enumerate(lines) if re.match(r"(async )?function ", line)]
     for start in starts:
         length = next(k for k in range(start, len(lines)) if lines[k] == "}") - start + 1

@@ -146,10 +146,12 @@ def test_everything_is_reached_by_tab_and_has_a_name(opened) -> None:
     names = []
     for _ in range(16):
         opened.page.keyboard.press("Tab")
-        names.append(opened.run(
-            "(() => { const e = document.activeElement; return e.getAttribute('aria-label') || "
-            "(e.labels && e.labels.length ? e.labels[0].textContent : e.textContent); })()"
-        ))
+        names.append(
+            opened.run(
+                "(() => { const e = document.activeElement; return e.getAttribute('aria-label') || "
+                "(e.labels && e.labels.length ? e.labels[0].textContent : e.textContent); })()"
+            )
+        )
     for wanted in ("dark theme", "von Mises", "mesh", "zoom in", "play", "growth time", "Configuration"):
         assert wanted in names, names
     assert all(name.strip() for name in names)
@@ -219,6 +221,10 @@ def test_numbers_and_settings_are_those_of_the_run(opened, folded: History) -> N
     assert re.search(r"mesh\.n_around\s+168", settings)
     assert re.search(r"geometry\.area\s+4069\.0\s+mm²", settings)
     whole = opened.page.locator("body").inner_text()
-    for text in (summary["config_hash"], summary["versions"]["numpy"], "gyrify run config.toml --out 'a folded slice'"):
+    for text in (
+        summary["config_hash"],
+        summary["versions"]["numpy"],
+        "gyrify run config.toml --out 'a folded slice'",
+    ):
         assert text in whole
     assert folded.config.to_toml().strip() in opened.page.locator("pre").nth(1).inner_text()

@@ -48,6 +48,10 @@ def _page(folder: Path) -> str:
         from gyrify.store import History
 
         return run_page(History.load(folder), _name(folder))
+    if (folder / "results.parquet").is_file():
+        from gyrify.report.html.study import study_page
+
+        return study_page(folder, _name(folder))
     raise HistoryError(
         f"There is neither a run nor a study in {folder}.",
         "Name a folder that `gyrify run` or `gyrify study` has written.",

@@ -9,6 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from gyrify.config.run_sections import OutputField
+from gyrify.mesh import Mesh
 from gyrify.report.html.packing import Coded, Payload, coded
 from gyrify.report.html.shown import SHOWN, ShownField, chosen, describe, scalar
 from gyrify.solve.types import FloatArray
@@ -21,6 +22,7 @@ PLANS: Final = ((51, 65535), (51, 4095), (34, 4095), (26, 1023), (21, 255), (13,
 # Bytes of the deflated arrays of one run; base 64 makes them a third larger.
 BUDGET: Final = 2_000_000
 _POSITION_CODES: Final = 65535
+Mode = tuple[FloatArray, FloatArray]
 # Largest displacement of the critical mode as stored, over the width of the slice.
 MODE_AMPLITUDE: Final = 0.03
 
@@ -89,16 +91,22 @@ def frames_of(history: History, most: int, names: Sequence[OutputField] = ALL) -
 
 
 def packed_frames(
-    history: History, frames: Frames, plans: Sequence[tuple[int, int]] = PLANS, budget: int = BUDGET
+    mesh: Mesh,
+    frames: Frames,
+    mode: Mode | None,
+    plans: Sequence[tuple[int, int]] = PLANS,
+    budget: int = BUDGET,
 ) -> tuple[dict[str, Any], str]:
     """Frames as a page carries them: the first of the plans that fits the budget, or else the last.
 
     Parameters
     ----------
-    history : History
-        The run.
+    mesh : Mesh
+        The run's mesh.
     frames : Frames
         Its states.
+    mode : (array, array), optional
+        From `mode_shapes`.
     plans : sequence of (int, int)
         Most frames, and codes per value (precision).
     budget : int
@@ -110,17 +118,24 @@ def packed_frames(
         What the arrays are, and the arrays in base 64.
     """
     for most, n_codes in plans:
-        header, payload = _packed(history, frames.thinned(most), n_codes)
+        header, payload = _packed(mesh, frames.thinned(most), mode, n_codes)
         text = payload.text()
         if len(text) <= budget * 4 // 3:
             break
     return header, text
 
 
-def _packed(history: History, frames: Frames, n_codes: int) -> tuple[dict[str, Any], Payload]:
+def mode_shapes(mesh: Mesh, displacement: FloatArray, vector: FloatArray) -> Mode:
+    """The state that first lost stability, and the same displaced along its mode, each (n_points, 2) [mm]."""
+    x, v = mesh.points + displacement[: mesh.n_points], vector[: mesh.n_points]
+    largest = float(np.linalg.norm(v[mesh.contour], axis=1).max())
+    width = float(np.ptp(x[mesh.contour, 0]))
+    return x, x + MODE_AMPLITUDE * width / largest * v if largest > 0.0 else x
+
+
+def _packed(mesh: Mesh, frames: Frames, mode: Mode | None, n_codes: int) -> tuple[dict[str, Any], Payload]:
     payload = Payload()
-    header = _mesh(history, payload)
-    mode = _mode(history)
+    header = _mesh(mesh, payload)
     header |= _positions(frames.points, mode, payload)
     header |= {
         "indices": frames.indices,
@@ -132,9 +147,8 @@ def _packed(history: History, frames: Frames, n_codes: int) -> tuple[dict[str, A
     return header, payload
 
 
-def _mesh(history: History, payload: Payload) -> dict[str, Any]:
+def _mesh(mesh: Mesh, payload: Payload) -> dict[str, Any]:
     """Triangles to draw, tissue of the cells, and the lines, as numbers of points."""
-    mesh = history.mesh
     payload.add("triangles", mesh.triangles.astype(np.uint32), 1)
     payload.add("region", mesh.region.astype(np.uint16)[:, None], 1)
     for name, line in (("contour", mesh.contour), ("interface", mesh.interface), ("clamped", mesh.clamped)):
@@ -151,9 +165,7 @@ def _mesh(history: History, payload: Payload) -> dict[str, Any]:
     }
 
 
-def _positions(
-    points: FloatArray, mode: tuple[FloatArray, FloatArray] | None, payload: Payload
-) -> dict[str, Any]:
+def _positions(points: FloatArray, mode: Mode | None, payload: Payload) -> dict[str, Any]:
     """Positions of all frames, then of the critical state without and with its mode, in one range."""
     extra = [] if mode is None else [mode[0][None], mode[1][None]]
     together = np.concatenate([points, *extra])
@@ -165,17 +177,6 @@ def _positions(
         payload.add("mode", rows[len(points) :], 1)
     step = float(codes.step[0])
     return {"position": {"low": low.tolist(), "step": step}}
-
-
-def _mode(history: History) -> tuple[FloatArray, FloatArray] | None:
-    """The state that first lost stability, and the same displaced along its mode [mm]."""
-    onset, mesh = history.onset, history.mesh
-    if onset is None:
-        return None
-    x, v = mesh.points + onset.displacement[: mesh.n_points], onset.vector[: mesh.n_points]
-    largest = float(np.linalg.norm(v[mesh.contour], axis=1).max())
-    width = float(np.ptp(x[mesh.contour, 0]))
-    return x, x + MODE_AMPLITUDE * width / largest * v if largest > 0.0 else x
 
 
 def _field(field: ShownField, values: FloatArray, n_codes: int, payload: Payload) -> dict[str, Any]:

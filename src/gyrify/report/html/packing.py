@@ -1,9 +1,9 @@
-r"""Arrays as a page carries them: whole numbers of 16 or 32 bits, differenced, deflated and written in base 64.
+r"""Arrays as a page carries them: whole numbers of 16 or 32 bits, differenced, deflated, in base 64.
 
 States follow each other smoothly, so that second differences along the states are small. They are folded to
-the unsigned numbers 0, -1, 1, -2, 2 ... = 0, 1, 2, 3, 4 ... and split into planes of bytes, of which the upper
-ones are then nearly empty; that is what makes them deflate well. Differences are taken modulo :math:`2^{16}` or
-:math:`2^{32}`, so that summing them up again is exact.
+the unsigned numbers 0, -1, 1, -2, 2 ... = 0, 1, 2, 3, 4 ... and split into planes of bytes, of which the
+upper ones are then nearly empty; that is what makes them deflate well. Differences are taken modulo
+:math:`2^{16}` or :math:`2^{32}`, so that summing them up again is exact.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from typing import Any, Final
 
 from gyrify.store.faults import storage_faults
 
-_STYLES: Final = ("base.css", "viewer.css", "sections.css", "study.css")
+STYLES: Final = ("base.css", "viewer.css", "sections.css", "study.css")
 _VIEWER: Final = (
     "dom.js",
     "numbers.js",
@@ -38,6 +38,16 @@ _VIEWER: Final = (
     "theme.js",
 )
 RUN_SCRIPTS: Final = (*_VIEWER, "tables.js", "run.js")
+STUDY_SCRIPTS: Final = (
+    *_VIEWER,
+    "tables.js",
+    "study-outline.js",
+    "study-table.js",
+    "study-phase.js",
+    "study-open.js",
+    "study-compare.js",
+    "study.js",
+)
 # Characters with a meaning in HTML, and those that end a line in old JavaScript.
 _ESCAPES: Final = {ord(c): f"\\u{ord(c):04x}" for c in "<>&\u2028\u2029"}
 
@@ -59,7 +69,7 @@ def page(document: Mapping[str, Any], payloads: Mapping[str, str], scripts: Sequ
     str
         HTML.
     """
-    style = _joined("css", _STYLES)
+    style = _joined("css", STYLES)
     script = '(() => {\n"use strict";\n' + _joined("js", scripts) + "})();\n"
     policy = (
         f"default-src 'none'; script-src '{_digest(script)}'; style-src '{_digest(style)}'; "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gyrify.report.html.colours import colour_maps
 from gyrify.report.html.describe import about
-from gyrify.report.html.frames import PLANS, frames_of, packed_frames
+from gyrify.report.html.frames import PLANS, frames_of, mode_shapes, packed_frames
 from gyrify.report.html.page import RUN_SCRIPTS, page
 from gyrify.report.html.series import plots
 from gyrify.store.history import History
@@ -26,7 +26,9 @@ def run_page(history: History, name: str) -> str:
     str
         HTML that needs no network and no other file; equal runs and names give equal pages.
     """
-    header, payload = packed_frames(history, frames_of(history, PLANS[0][0]))
+    mesh, onset = history.mesh, history.onset
+    mode = None if onset is None else mode_shapes(mesh, onset.displacement, onset.vector)
+    header, payload = packed_frames(mesh, frames_of(history, PLANS[0][0]), mode)
     document = {
         "kind": "run",
         "colours": colour_maps(),

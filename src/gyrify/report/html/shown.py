@@ -12,7 +12,8 @@ from gyrify.config.run_sections import OutputField
 from gyrify.solve.types import FloatArray
 from gyrify.store.fields import UNITS
 
-# Colours run between these quantiles, so that a few extreme cells, or points in cusps, do not wash out all others.
+# Colours run between these quantiles, so that a few extreme cells, or points in cusps, do not wash out the
+# others.
 _OUTER: Final = {"cell": 0.005, "contour": 0.02}
 # A state that is nearly uniform is coloured over at least this part of the range of the whole run.
 _NARROWEST: Final = 1e-3

@@ -33,7 +33,12 @@ async function createPanel(run, payloadId, colours, { field = "von_mises", isAct
   viewer.set({ field: first });
   player.seek(model.nFrames - 1);
   const host = layOut({ viewer, player, tooltip, pointer, choice, mode, plots, colours });
-  return { host, viewer, player, choice, model };
+  const release = () => {
+    player.toggle(false);
+    if (mode) mode.leave();
+    viewer.release();
+  };
+  return { host, viewer, player, choice, model, release };
 }
 
 function layOut({ viewer, player, tooltip, pointer, choice, mode, plots, colours }) {

@@ -8,7 +8,7 @@ function createViewer(model, colours) {
   const painter = createPainter(canvas);
   const camera = createCamera(model.bounds);
   const state = { frame: model.nFrames - 1, field: "region", scope: "run", limits: null, mesh: false, mode: null };
-  const viewer = { canvas, camera, state, model, isAble: painter !== null, drawn: signal() };
+  const viewer = { canvas, camera, state, model, isAble: painter !== null, gl: painter && painter.gl, drawn: signal() };
   const fill = painter && createFill(painter, model);
   const ink = painter && createInk(painter);
   let isWaiting = false;
@@ -38,6 +38,7 @@ function createViewer(model, colours) {
     viewer.drawn.emit();
   };
   viewer.corners = () => fill.corners(viewer);
+  viewer.release = () => painter && viewer.gl.getExtension("WEBGL_lose_context").loseContext();
   canvas.addEventListener("webglcontextrestored", () => location.reload());
   observeSize(canvas, camera, viewer);
   return viewer;
