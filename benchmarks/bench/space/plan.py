@@ -18,7 +18,7 @@ from bench.timing import interleaved
 SIZES, MILLION = (8, 12, 16, 20, 24, 26), 48
 # Iterations of Newton's method that a run of 3-D growth is planned with.
 ITERATIONS = 300
-SUPERLU_UP_TO = 20
+SUPERLU_UP_TO = 16
 FITTED_FROM = 12
 
 
