@@ -17,7 +17,7 @@ import install_lines
 from blocks import DIRECTIVES, ROOT, Block
 from printed import missing_lines, unknown_columns, unknown_keys
 
-from gyrify import Config, __version__
+from gyrify import Config, Study, __version__
 
 _TIME_LIMIT = 1800.0
 _NAME = re.compile(r"# (\S+\.toml)$", re.MULTILINE)
@@ -74,15 +74,12 @@ class Runner:
     def _toml(self, block: Block) -> None:
         """Load as a configuration or a study; a name in the first comment makes it a file."""
         named = _NAME.match(block.text)
-        if named:
-            (self.folder / named[1]).write_text(block.text, encoding="utf-8")
-        with contextlib.chdir(self.folder):
-            if "design" in tomllib.loads(block.text):
-                from gyrify import Study
-
-                Study.from_toml(block.text)
-            else:
-                Config.from_toml(block.text)
+        file = self.folder / (named[1] if named else "unnamed.toml")
+        file.write_text(block.text, encoding="utf-8")
+        if "design" in tomllib.loads(block.text):
+            Study.from_toml(file)
+        else:
+            Config.load(file)
 
     def _text(self, block: Block) -> None:
         missing = missing_lines(block.text, self._printed)

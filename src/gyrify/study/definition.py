@@ -63,6 +63,11 @@ class Study:
     def from_toml(cls, path: str | Path) -> Study:
         """Read a study file.
 
+        Parameters
+        ----------
+        path : path
+            The file, in TOML.
+
         Raises
         ------
         ConfigError
