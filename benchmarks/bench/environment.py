@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import subprocess
 import sys
@@ -24,8 +25,7 @@ def is_inside() -> bool:
 def enter() -> int:
     """Make the environment if it is missing or outdated, and run this command again inside it."""
     python = VENV / "bin" / "python"
-    stamp = VENV / "requirements.txt"
-    wanted = REQUIREMENTS.read_text()
+    stamp, wanted = VENV / "installed", _wanted()
     if not python.exists():
         print(f"Making {VENV.relative_to(ROOT)} (once).", file=sys.stderr)
         subprocess.run([sys.executable, "-m", "venv", VENV], check=True)
@@ -34,6 +34,12 @@ def enter() -> int:
         stamp.write_text(wanted)
     command = [str(python), str(HERE), *sys.argv[1:]]
     return subprocess.run(command, env={**os.environ, **ONE_THREAD}, check=False).returncode
+
+
+def _wanted() -> str:
+    """Digest of everything that decides what is installed."""
+    sources = (REQUIREMENTS, ROOT / "pyproject.toml", ROOT / "constraints.txt")
+    return hashlib.sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()
 
 
 def _install(python: Path) -> None:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
-from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
 
 from gyrify import Config, History, simulate
+from gyrify.errors import ConfigError
 from gyrify.model import Slice
+from gyrify.solve.linear import linear_solver
 
 # A slice that folds into contact in a fraction of a second, to try the benchmarks out.
 QUICK = {
@@ -30,7 +31,10 @@ def configuration(quick: bool, overrides: Mapping[str, Any] | None = None) -> Co
 
 def solvers() -> list[str]:
     """Linear solvers of this machine, the fastest first."""
-    return ["pardiso", "superlu"] if find_spec("pypardiso") else ["superlu"]
+    try:
+        return [linear_solver("pardiso").name, "superlu"]
+    except ConfigError:
+        return ["superlu"]
 
 
 @cache

@@ -22,16 +22,22 @@ PARTS = {
     "journal": ("store.journal",),
 }
 LIBRARIES = ("solve.linear", "solve.pardiso")
-PHASES = {"analyse": "symbolic analysis", "factorise": "factorisation", "solve": "triangular solves"}
+PHASES = {
+    "analyse": "symbolic analysis",
+    "factorise": "factorisation",
+    "factorise_definite": "factorisation",
+    "solve": "triangular solves",
+}
 
 
 class Clock:
-    """Own time of each part: what a part calls in another one counts there only."""
+    """Own time of each part: what a part calls in another one counts there only, its own calls count once."""
 
     def __init__(self) -> None:
         self.seconds: defaultdict[str, float] = defaultdict(float)
         self.calls: defaultdict[str, int] = defaultdict(int)
         self._inner: list[float] = []
+        self._open: list[str] = []
 
     def wrap(self, part: str, method: Callable[..., Any]) -> Callable[..., Any]:
         """The method, timed."""
@@ -39,13 +45,15 @@ class Clock:
         @wraps(method)
         def timed(*args: Any, **kwargs: Any) -> Any:
             self._inner.append(0.0)
+            self.calls[part] += not self._open or self._open[-1] != part
+            self._open.append(part)
             begun = time.perf_counter()
             try:
                 return method(*args, **kwargs)
             finally:
                 spent = time.perf_counter() - begun
                 self.seconds[part] += spent - self._inner.pop()
-                self.calls[part] += 1
+                self._open.pop()
                 if self._inner:
                     self._inner[-1] += spent
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from bench import split
-from bench.iteration import EVERY, keeping
+from bench.iteration import EVERY, METHODS, keeping
 from bench.split import clocked
 
 from gyrify import simulate
@@ -20,6 +20,7 @@ def test_clocks_count_every_factorisation_and_come_off_again(problem: Slice) -> 
     assert dict(vars(SuperLU)) == before
     # the last factorisation is that of the stability of the final state
     assert history.stats.factorizations <= clock.calls["factorisation"] <= history.stats.factorizations + 1
+    assert clock.calls["symbolic analysis"] >= history.stats.analyses
     assert clock.calls["tissue energy"] > history.stats.newton_iterations
     assert set(clock.seconds) <= {*split.PARTS, *split.PHASES.values()}
 
@@ -38,7 +39,8 @@ def test_kept_matrices_are_those_that_were_factorised(problem: Slice) -> None:
     with keeping("superlu") as kept:
         simulate(config)
     assert len(kept.matrices) == -(-kept.factorised // EVERY)
-    number, data = kept.matrices[-1]
+    number, data, method = kept.matrices[-1]
+    assert method in METHODS
     indptr, indices = kept.patterns[number]
     assert indptr[-1] == indices.size == data.size
     solver, right = SuperLU(), np.ones(indptr.size - 1)

@@ -53,7 +53,7 @@ class GrownCells:
         assert config.mesh.element == "linear", "the other libraries are given linear triangles"
         assert config.growth.law == "isotropic", "F_e = F / lambda_g holds for isotropic growth"
         assert config.growth.energy_per == "grown", "energy is counted per grown volume"
-        stretch = 1.0 / kinematics.base[:, 0, 0]
+        stretch = np.sqrt(kinematics.J_g * kinematics.f33)  # det F_g without its 33 entry, in the plane
         return GrownCells(
             mesh.points, mesh.cells, stretch, kinematics.f33, kinematics.J_g, problem.mu, problem.kappa
         )

@@ -99,6 +99,11 @@ class SciPySolver:
             sla.splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
         )
 
+    def factorise_definite(self, data: FloatArray) -> SciPyFactor | None:
+        """Factorise where no pivot is negative, else None."""
+        factor = self.factorise(data)
+        return factor if factor.n_negative == 0 else None
+
 
 class SciPyFactor:
     """See `gyrify.solve.linear.Factor`."""
