@@ -19,9 +19,9 @@ from gyrify.report.paper_tables import MARKS, csv_text, markdown_table, write_te
 SHOWN: Final = 40
 _SIGNS: Final = {True: "✓", False: "✗", None: "·"}
 _AXES: Final = ("out_of_plane", "stretch", "energy_per", "dissipation", "number", "element")
-_LEGEND: Final = (
-    "✓ holds, ✗ does not, · left open: with all that is open the reading would still not be among the best "
-    "three, so that it was not run to the end."
+_LEGEND: Final = "✓ holds, ✗ does not, · left open. "
+_WHY_OPEN: Final = (
+    "With all that is open such a reading would still not be among the best three: it was not run to the end."
 )
 
 
@@ -88,7 +88,7 @@ def seeds_csv(ensembles: Sequence[Ensemble]) -> str:
 def readings_markdown(screening: Screening, ensembles: Sequence[Ensemble]) -> str:
     """Ranking with the matrix, and the best with several seeds."""
     names, lines = _matrix(screening)
-    blocks = ["# Readings of Wang, Yao and Hu (2019), ranked", _summary(screening), _LEGEND]
+    blocks = ["# Readings of Wang, Yao and Hu (2019), ranked", _summary(screening), _legend(screening)]
     blocks.append(markdown_table(names, lines))
     for ensemble in ensembles:
         blocks += [f"## {ensemble.reading}", _members(ensemble), markdown_table(*_passes(ensemble))]
@@ -99,7 +99,7 @@ def readings_markdown(screening: Screening, ensembles: Sequence[Ensemble]) -> st
 def readings_page(screening: Screening, ensembles: Sequence[Ensemble]) -> str:
     """The same as an HTML page."""
     names, lines = _matrix(screening)
-    blocks = [f"<p>{escape(_summary(screening))}</p><p class='small'>{escape(_LEGEND)}</p>"]
+    blocks = [f"<p>{escape(_summary(screening))}</p><p class='small'>{escape(_legend(screening))}</p>"]
     blocks.append(html_table(names, lines))
     for ensemble in ensembles:
         blocks.append(f"<h2>{escape(str(ensemble.reading))}</h2><p>{escape(_members(ensemble))}</p>")
@@ -142,6 +142,10 @@ def _summary(screening: Screening) -> str:
         )
     hidden = n - min(n, SHOWN)
     return told + (f" The best {SHOWN} are shown; readings.csv has all." if hidden else "")
+
+
+def _legend(screening: Screening) -> str:
+    return (_LEGEND + (_WHY_OPEN if screening.is_complete else "")).strip()
 
 
 def _members(ensemble: Ensemble) -> str:
