@@ -34,8 +34,10 @@ def main() -> int:
     if not is_inside():
         return enter()
     if options.page is not None:
+        from bench.chart import draw
         from bench.page import refresh
 
+        draw()
         for path in options.page or PAGES:
             refresh(path)
         return 0
