@@ -89,7 +89,7 @@ def _palette(samples: Sequence[Pixels], colours: Sequence[Sequence[int]]) -> Any
     sample = Image.fromarray(np.concatenate(list(samples)))
     reduced = sample.quantize(others, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     kept = np.array(colours)
-    found = np.array(reduced.getpalette()[: 3 * others]).reshape(-1, 3)
+    found = np.array((reduced.getpalette() or [])[: 3 * others]).reshape(-1, 3)
     # A mean of nearly white pixels would be found for white: what is close to a kept colour becomes that.
     apart = np.abs(found[:, None] - kept).max(axis=2)
     found = np.where(apart.min(axis=1, keepdims=True) <= _CLOSE, kept[apart.argmin(axis=1)], found)
