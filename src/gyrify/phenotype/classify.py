@@ -24,7 +24,7 @@ class Phenotype:
     sentence : str
         What that rule says.
     because : str
-        Its conditions with their values.
+        Its conditions with their values; where it has none, the numbers on which no other rule fired.
     numbers : dict
         All numbers the rules know [-].
     """
@@ -63,5 +63,11 @@ def classify(
     known = rules or load_rules()
     numbers = shape_numbers(metrics, thickness, known.normal_gyri)
     rule = known.first(numbers)
-    because = ", ".join(condition.text(numbers) for condition in rule.when) or "no earlier rule fired"
+    because = ", ".join(condition.text(numbers) for condition in rule.when) or _plain(known, numbers)
     return Phenotype(rule.label, rule.name, rule.sentence, because, numbers)
+
+
+def _plain(rules: Rules, numbers: Mapping[str, float]) -> str:
+    """The numbers that rules look at."""
+    looked_at = dict.fromkeys(condition.number for rule in rules.rules for condition in rule.when)
+    return ", ".join(f"{name} = {numbers[name]:.3g}" for name in looked_at)

@@ -8,11 +8,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
+from scipy.optimize import brentq
 
 from gyrify.config import Config
 from gyrify.errors import ConfigError, SolveError
 from gyrify.report.plot.dispersion import annulus_of
-from gyrify.theory.onset import Crossing, Parameter, crossings
+from gyrify.theory.annulus import BaseState
+from gyrify.theory.onset import Parameter, stability_margin, state_at
 
 FloatArray = NDArray[np.float64]
 Span = tuple[float, float]
@@ -34,8 +36,9 @@ COVERED: Final = (
     "material.poisson_ratio_white",
     "growth.rate",
 )
-_SECTIONS: Final = 11
-_SCAN: Final = 8
+_SECTIONS: Final = 9
+_SCAN: Final = 7
+_ACCURACY: Final = 1e-3
 _SMOOTH: Final = 160
 
 
@@ -91,13 +94,24 @@ def onset_curve(config: Config, keys: tuple[str, str], spans: tuple[Span, Span])
 
 def _crossings(config: Config, key: str, span: Span) -> list[float]:
     """Values of the scanned parameter at which stability changes; none where theory finds no base state."""
-    parameter = SCANNED[key]
+    annulus, parameter = annulus_of(config.replace(**{key: span[1]})), SCANNED[key]
+    guess: BaseState | None = None
+
+    def margin(value: float) -> float:
+        nonlocal guess
+        guess = state_at(annulus, parameter, value, annulus.duration, guess)
+        return stability_margin(guess).value
+
+    values = _spaced(span, _SCAN).tolist()
     try:
-        annulus = annulus_of(config.replace(**{key: span[1]}))
-        found: tuple[Crossing, ...] = crossings(annulus, parameter, _spaced(span, _SCAN).tolist())
+        margins = [margin(value) for value in values]
+        return [
+            float(brentq(margin, values[i], values[i + 1], rtol=_ACCURACY))
+            for i in range(len(values) - 1)
+            if (margins[i] < 0.0) != (margins[i + 1] < 0.0)
+        ]
     except (ConfigError, SolveError):
         return []
-    return [crossing.value for crossing in found]
 
 
 def _spaced(span: Span, n: int) -> FloatArray:

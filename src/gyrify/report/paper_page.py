@@ -8,7 +8,7 @@ from typing import Final
 
 from gyrify.paper.scoreboard import Scoreboard
 from gyrify.report.paper_layout import LAYOUTS
-from gyrify.report.paper_tables import MARKS
+from gyrify.report.paper_tables import MARKS, SYMBOLS
 
 _STYLE: Final = """
 body { font: 15px/1.5 system-ui, sans-serif; color: #1f1f1f; max-width: 70rem;
@@ -21,7 +21,7 @@ td.pass { color: #005a8c; font-weight: 600; white-space: nowrap; }
 td.fail { color: #b34700; font-weight: 600; white-space: nowrap; }
 td.open { color: #595959; white-space: nowrap; }
 figure { margin: 1.5rem 0; } img { max-width: 100%; } figcaption, .small { font-size: 0.87rem; color: #444; }
-.scroll { overflow-x: auto; }
+.scroll { overflow-x: auto; } td:nth-child(2) { min-width: 13rem; }
 """
 _SIGNS: Final = {"pass": "✓ pass", "fail": "✗ fail", "open": "· open"}
 
@@ -54,7 +54,7 @@ def scoreboard_page(board: Scoreboard, figures: str = "figures") -> str:
     )
     return page(
         "Wang, Yao and Hu (2019), reproduced",
-        f"<p>Reading: {escape(board.reading)}.</p>"
+        f"<p>Reading: {escape(board.reading)}. {escape(SYMBOLS)}</p>"
         f"<p><b>{board.passed} of {len(board.rows)}</b> observations hold.</p>",
         html_table(names, rows),
         "<h2>Figures</h2>",

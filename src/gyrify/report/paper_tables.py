@@ -13,6 +13,10 @@ from gyrify.paper.cases import Case
 from gyrify.paper.row import Row
 from gyrify.paper.scoreboard import Scoreboard
 
+SYMBOLS: Final = (
+    "E is the stiffness ratio E_G/E_W, G the growth ratio G_G/G_W and T the initial thickness of the cortex; "
+    "what is not named is standard: G = 3.6, T = 1.5 mm."
+)
 MARKS: Final = {True: "pass", False: "fail", None: "open"}
 
 
@@ -77,7 +81,7 @@ def scoreboard_markdown(board: Scoreboard) -> str:
     rules = [f"- **{r.id}** ({r.where}): {r.rule}" for r in board.rows]
     blocks = (
         "# Wang, Yao and Hu (2019), reproduced",
-        f"Reading: {board.reading}. **{board.passed} of {len(board.rows)}** observations hold.",
+        f"Reading: {board.reading}. **{board.passed} of {len(board.rows)}** observations hold. {SYMBOLS}",
         table,
         "## Notes",
         "\n".join(notes) or "Nothing to add.",

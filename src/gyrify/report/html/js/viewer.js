@@ -2,6 +2,7 @@
 
 const REGION = { name: "region", label: "tissue", place: "cell", unit: "" };
 const BAND_WIDTH = 7; // pixels of the band that carries a field of the contour
+const REST = 120; // milliseconds without a change after which the scene is drawn finely
 
 function createViewer(model, colours) {
   const canvas = element("canvas", { class: "scene-canvas", tabindex: 0, role: "img" });
@@ -12,6 +13,7 @@ function createViewer(model, colours) {
   const fill = painter && createFill(painter, model);
   const ink = painter && createInk(painter);
   let isWaiting = false;
+  let rest = 0;
 
   viewer.field = () => model.fields.get(state.field) || REGION;
   viewer.limits = () => {
@@ -32,9 +34,15 @@ function createViewer(model, colours) {
       viewer.drawNow();
     });
   };
-  viewer.drawNow = () => {
-    if (!painter || camera.width < 2) return;
+  // While things move, quickly; a moment later, finely.
+  viewer.drawNow = (isFine = false) => {
+    clearTimeout(rest);
+    if (!painter || camera.width < 2 || painter.gl.isContextLost()) return;
+    painter.begin(themeColour("--scene"), camera, isFine);
     drawScene(painter, viewer, colours, fill, ink);
+    painter.end(isFine);
+    if (isFine) return;
+    rest = setTimeout(() => viewer.drawNow(true), REST);
     viewer.drawn.emit();
   };
   viewer.corners = () => fill.corners(viewer);
@@ -128,7 +136,6 @@ function drawScene(painter, viewer, colours, fill, ink) {
   const field = viewer.field();
   const isBand = field.place === "contour" && state.mode === null;
   const isScalar = field !== REGION && !isBand && state.mode === null;
-  painter.begin(themeColour("--scene"), viewer.camera);
   painter.map(mapBytes(colours[isScalar || isBand ? field.colours : "region"], !isScalar && !isBand));
   painter.style(isBand ? { colour: themeColour("--tissue") } : { limits: isScalar ? viewer.limits() : [0, 1] });
   fill.draw(viewer, isScalar ? field.name : "region");
