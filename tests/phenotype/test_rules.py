@@ -67,6 +67,7 @@ def test_every_shape_gets_the_label_of_the_first_rule_that_fires(
     assert (found.label, found.rule) == (fired[0].label, fired[0].name)
     assert found.numbers == shape_numbers(row, thickness, rules.normal_gyri)
     assert all(condition.number in found.because for condition in fired[0].when)
+    assert found.because
 
 
 @settings(max_examples=100, deadline=None, derandomize=True)

@@ -81,7 +81,8 @@ def _index(rows: Rows, case: Case, paper: float) -> Verdict:
         (case,),
         lambda row: abs(row.gi - paper) <= GI_AGREES,
         lambda row: (
-            f"GI = {row.gi:.3f} is {abs(row.gi - paper):.3f} {'above' if row.gi > paper else 'below'}"
+            f"GI = {row.gi:.3f} at {case} is {abs(row.gi - paper):.3f} "
+            f"{'above' if row.gi > paper else 'below'} {paper}"
         ),
     )
     return Verdict(shown(rows, (case,), lambda row: f"{row.gi:.3f}"), (found,))
