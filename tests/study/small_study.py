@@ -39,8 +39,8 @@ key = "growth.ratio"
 values = [1.0, 3.6]
 
 [[design.parameter]]
-key = "material.stiffness_ratio"
-values = ["1/1.36", 1.0]
+key = "dissipation.number"
+values = ["1/2", 1.3]
 """
 LISTENING = """
 import os, signal, sys

@@ -80,7 +80,7 @@ def test_what_is_wrong_is_named(tables: dict[str, Any], message: str) -> None:
 def test_a_file_is_read_with_fractions(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(TEXT.format(increments=8))
     points = Study.from_toml(tmp_path / "study.toml").points()
-    assert [point.config.material.stiffness_ratio for point in points[:2]] == [1 / 1.36, 1.0]
+    assert [point.config.dissipation.number for point in points[:2]] == [0.5, 1.3]
     assert {point.config.mesh.n_around for point in points} == {48}
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 Expression = Annotated[str, Parameter(allow_leading_hyphen=True)]
 _QUANTITIES = ("gi_closing", "n_gyri", "sulcal_depth_mm_max", "onset_growth_time")
-_PLAIN_WIDTH = 160
+_PLAIN_WIDTH = 240
 
 
 def table(
