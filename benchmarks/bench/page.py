@@ -58,8 +58,8 @@ BLOCKS = {
     "dynamics": Block(("dynamics",)),
     "factors": Block(("space",), only=r"^(pardiso|superlu), \d+ cells", is_crossed=True, is_wide=True),
     "multigrid": Block(("space",), only=r"^multigrid, \d+ cells", is_crossed=True, is_wide=True),
-    "exponents": Block(("space",), only=": exponent of", is_crossed=True, is_wide=True),
-    "million": Block(("space",), only="a million:", is_crossed=True, is_wide=True),
+    "exponents": Block(("space",), only=": exponent of", is_crossed=True),
+    "million": Block(("space",), only="a million:", is_crossed=True),
     "rates": Block(("space",), only="^(assembly|contact)"),
     "plan": Block(("space",), only="^plan: "),
 }
@@ -113,10 +113,8 @@ def _crossed(figures: list[Figure], is_wide: bool) -> list[str]:
 
 
 def _where(entry: dict[str, Any], case: str) -> str:
-    machine, versions = entry["machine"], entry["versions"]
+    machine = entry["machine"]
     words = "small slices, to try the page out" if entry["quick"] else f"`--only {case}`"
-    libraries = ", ".join(f"{n} {versions[n]}" for n in ("numpy", "scipy", "mkl") if n in versions)
     return (
-        f"*{words}; commit {entry['commit']}, {entry['date']}; {machine['cpu']}, {machine['cores']} cores, "
-        f"one thread; {libraries}. In brackets: quartiles. ≈: calculated, not measured.*"
+        f"*{words}; commit {entry['commit']}, {entry['date']}; {machine['cpu']}, {machine['cores']} cores.*"
     )

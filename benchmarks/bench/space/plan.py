@@ -19,7 +19,8 @@ SIZES, MILLION = (8, 12, 16, 20, 24, 26), 48
 # Iterations of Newton's method that a run of 3-D growth is planned with.
 ITERATIONS = 300
 SUPERLU_UP_TO = 16
-FITTED_FROM = 12
+# Sizes that the exponents are fitted to, the largest: the smaller ones have not come to their powers yet.
+FITTED = 3
 
 
 def space(quick: bool) -> Figures:
@@ -82,9 +83,8 @@ def fit(cells: Sequence[float], values: Sequence[float]) -> tuple[float, float]:
 
 
 def _extrapolated(name: str, runs: Sequence[dict[str, Any]]) -> Figures:
-    """Exponents over the larger sizes, and values at a million cells from them."""
-    larger = [run for run in runs if run["cells"] >= 9 * FITTED_FROM**3] or list(runs)
-    larger = larger if len(larger) > 1 else list(runs)
+    """Exponents over the largest sizes, and values at a million cells from them."""
+    larger = runs[-FITTED:]
     goal = 9 * MILLION**3
     found = []
     for quantity in QUANTITIES[name]:
