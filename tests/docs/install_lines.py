@@ -13,6 +13,7 @@ from blocks import ROOT
 
 _PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 _MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
+_INSTALLS = re.compile(r"^make\b|\b(?:pip|conda|apt|apt-get) install\b")
 _TARGETS = set(re.search(r"^\.PHONY: (.*)$", _MAKEFILE, re.MULTILINE)[1].split())  # type: ignore[index]
 
 
@@ -36,10 +37,16 @@ def _is_clone(match: re.Match[str]) -> bool:
     return match["name"] == _PROJECT["name"]
 
 
+def _is_script(match: re.Match[str]) -> bool:
+    """A script of the repository; those that write its pages are tested by what they write."""
+    return (ROOT / match["path"]).exists()
+
+
 # Pattern of a whole line, and what must hold for it.
 CHECKS: list[tuple[str, Callable[[re.Match[str]], bool]]] = [
-    (r"make (?P<target>[\w-]+)", _makes),
-    (r"(?:\S*python3? -m )?pip install (?:-e )?'?(?:\.|gyrify)(?:\[(?P<extras>[\w,]+)\])?'?", _installs),
+    (r"make (?P<target>[\w-]+)(?: [A-Z]+=\S+)?", _makes),
+    (r"python (?P<path>(?:benchmarks|docs|tools)[\w./-]*)(?: --?[\w-]+)*", _is_script),
+    (r"(?:\S*python3? -m )?pip install (?:-e )?'?(?:\.|gyrify)(?:\[(?P<extras>[\w,-]+)\])?'?", _installs),
     (r"python3 -m venv (?P<venv>\S+)", _is_environment),
     (r"source (?P<venv>\S+)/bin/activate", _is_environment),
     (r"cd (?P<name>gyrify)", _is_clone),
@@ -53,7 +60,9 @@ def split(script: str) -> tuple[list[str], str]:
         command = re.sub(r"\s+#.*", "", line).strip()
         found = [(re.fullmatch(pattern, command), check) for pattern, check in CHECKS]
         matches = [(match, check) for match, check in found if match]
-        if not matches:
+        if not matches and _INSTALLS.search(command):
+            faults.append(f"installs something else: {command}")
+        elif not matches:
             rest.append(line)
         elif not any(check(match) for match, check in matches):
             faults.append(f"not what the project has: {command}")

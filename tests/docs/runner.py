@@ -15,6 +15,7 @@ from typing import Any
 
 import install_lines
 from blocks import DIRECTIVES, ROOT, Block
+from options import unknown_options
 from printed import missing_lines, unknown_columns, unknown_keys
 
 from gyrify import Config, Study, __version__
@@ -45,7 +46,9 @@ class Runner:
 
     def run(self, block: Block) -> None:
         """Run or compare a block; an assertion says what is wrong with it."""
-        if block.language not in DIRECTIVES and not block.is_as_shown:
+        if block.is_as_shown:
+            assert block.language != "sh" or not unknown_options(block.text), unknown_options(block.text)
+        elif block.language not in DIRECTIVES:
             getattr(self, f"_{block.language}")(block)
         self.n_checked += 1
 

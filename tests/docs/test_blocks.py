@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from blocks import PAGES, Block, blocks, faults
+from options import unknown_options
 from printed import missing_lines, unknown_columns, unknown_keys
 from runner import Runner
 
@@ -71,6 +72,13 @@ def test_a_wrong_page_fails(tmp_path: Path) -> None:
     for block in wrong:
         with pytest.raises(Exception):  # noqa: B017 - any error is the point
             Runner(tmp_path).run(block)
+
+
+def test_commands_that_are_not_run_must_exist() -> None:
+    assert unknown_options("gyrify paper --readings --workers 2 \\\n  --out paper  # long\nmake run") == []
+    assert unknown_options("gyrify papre --readings") == ["gyrify papre"]
+    assert unknown_options("gyrify config show --no-such") == ["gyrify config show --no-such"]
+    assert unknown_options("pip install something-else") != []
 
 
 def test_printed_numbers_may_round_differently_and_no_more() -> None:

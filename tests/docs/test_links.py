@@ -63,9 +63,11 @@ def test_every_figure_is_used_and_made_by_a_script() -> None:
 
 
 def _is_made(stem: str, sources: str) -> bool:
-    """Whether a script names the figure, or the two parts that it joins to the name."""
+    """Whether a script names the figure, or the parts that it joins to the name (a word, or a function)."""
     first, _, rest = stem.partition("-")
-    joined = re.search(rf'f"{first}-{{\w+}}', sources) is not None and f'"{rest}"' in sources
+    joined = re.search(rf'f"{first}-{{[\w.]+}}', sources) is not None and (
+        f'"{rest}"' in sources or f"def {rest}(" in sources
+    )
     return f'"{stem}' in sources or f"{stem}.png" in sources or joined
 
 
