@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import wraps
-from time import perf_counter
+from time import process_time
 from typing import Any
 
 import numpy as np
 
 from bench.figures import Figure, Figures
-from bench.slices import configuration, solvers
+from bench.slices import configuration, grown, solvers
 from bench.timing import Sample
 from gyrify import simulate
 from gyrify.solve.linear import LinearSolver, linear_solver
@@ -93,8 +93,8 @@ def iteration(quick: bool) -> Figures:
             simulate(config)
         whole, bare = [], []
         for _ in range(2 if quick else 5):
-            history = simulate(config)
-            whole.append(history.wall_s / history.stats.newton_iterations)
+            history, seconds = grown(config)
+            whole.append(seconds / history.stats.newton_iterations)
             bare.append(_bare(name, kept))
         run, alone = Sample(tuple(whole)), Sample(tuple(bare))
         found += [
@@ -114,10 +114,10 @@ def _bare(name: str, kept: Kept) -> float:
             opened[number, method] = linear_solver(name)  # type: ignore[arg-type]
             opened[number, method].analyse(*kept.patterns[number])
             _solved(opened[number, method], method, data, right)
-    begun = perf_counter()
+    begun = process_time()
     for number, data, method in kept.matrices:
         _solved(opened[number, method], method, data, right)
-    return (perf_counter() - begun) / len(kept.matrices)
+    return (process_time() - begun) / len(kept.matrices)
 
 
 def _solved(solver: LinearSolver, method: str, data: np.ndarray, right: np.ndarray) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
+from time import process_time
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from gyrify import Config, History, simulate
 from gyrify.errors import ConfigError
 from gyrify.model import Slice
+from gyrify.simulation import new_run
 from gyrify.solve.linear import linear_solver
 
 # A slice that folds into contact in a fraction of a second, to try the benchmarks out.
@@ -35,6 +37,15 @@ def solvers() -> list[str]:
         return [linear_solver("pardiso").name, "superlu"]
     except ConfigError:
         return ["superlu"]
+
+
+def grown(config: Config) -> tuple[History, float]:
+    """A run in memory, and the processor time of its growth [s], which others on the machine do not lengthen."""
+    with new_run(config) as run:
+        run.problem.compile()
+        begun = process_time()
+        run.grow()
+        return run.history, process_time() - begun
 
 
 @cache

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from bench.figures import Figure, Figures
-from bench.slices import configuration, folded, solvers
+from bench.slices import configuration, folded, grown, solvers
 from bench.split import clocked
 from bench.timing import Sample
 from gyrify import History, measure_state, simulate
@@ -14,14 +14,18 @@ from gyrify import History, measure_state, simulate
 def standard(quick: bool) -> Figures:
     """Whole standard runs in memory, both solvers in turns."""
     folded(quick)  # compiles
-    names, seconds, last = solvers(), {}, {}
+    names, last = solvers(), {}
+    wall: dict[str, list[float]] = {name: [] for name in names}
+    processor: dict[str, list[float]] = {name: [] for name in names}
     for _ in range(2 if quick else 5):
         for name in names:
-            last[name] = simulate(configuration(quick, {"solver.linear_solver": name}))
-            seconds.setdefault(name, []).append(last[name].wall_s)
+            last[name], seconds = grown(configuration(quick, {"solver.linear_solver": name}))
+            wall[name].append(last[name].wall_s)
+            processor[name].append(seconds)
     found: Figures = []
     for name in names:
-        found.append(Figure.of(f"{name}: solve", Sample(tuple(seconds[name]))))
+        found.append(Figure.of(f"{name}: solve", Sample(tuple(wall[name]))))
+        found.append(Figure.of(f"{name}: processor time", Sample(tuple(processor[name]))))
         found += _work(name, last[name])
         found += _split(name, quick)
     return found
