@@ -53,6 +53,13 @@ CHECKS: list[tuple[str, Callable[[re.Match[str]], bool]]] = [
 ]
 
 
+def _recipe(target: str) -> list[str]:
+    """Commands of gyrify that a target runs; they are run here too."""
+    found = re.search(rf"^{target}:.*\n((?:\t.*\n)*)", _MAKEFILE, re.MULTILINE)
+    lines = found[1].splitlines() if found else []
+    return [line.strip().removeprefix("$(BIN)/") for line in lines if line.startswith("\t$(BIN)/gyrify ")]
+
+
 def split(script: str) -> tuple[list[str], str]:
     """Faults of the lines that are compared, and the script without them."""
     faults, rest = [], []
@@ -66,4 +73,6 @@ def split(script: str) -> tuple[list[str], str]:
             rest.append(line)
         elif not any(check(match) for match, check in matches):
             faults.append(f"not what the project has: {command}")
+        elif command.startswith("make "):
+            rest += _recipe(command.split()[1])
     return faults, "\n".join(rest)
