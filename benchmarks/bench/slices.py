@@ -40,7 +40,7 @@ def solvers() -> list[str]:
 
 
 def grown(config: Config) -> tuple[History, float]:
-    """A run in memory, and the processor time of its growth [s], which others on the machine do not lengthen."""
+    """A run in memory, and the processor time of its growth [s], which no other process lengthens."""
     with new_run(config) as run:
         run.problem.compile()
         begun = process_time()

@@ -81,6 +81,9 @@ def _methods() -> Iterator[tuple[type, str, Callable[..., Any], str]]:
                 if inspect.isfunction(method) and not name.startswith("__"):
                     yield owner, name, method, part
     for owner in _classes(LIBRARIES):
+        # what is made of a pattern is an analysis; a factor is made of a matrix
+        if "__init__" in vars(owner) and not owner.__name__.endswith("Factor"):
+            yield owner, "__init__", vars(owner)["__init__"], PHASES["analyse"]
         for name, part in PHASES.items():
             if inspect.isfunction(vars(owner).get(name)):
                 yield owner, name, vars(owner)[name], part
