@@ -44,6 +44,13 @@ def test_points_tell_what_differs_and_leave_the_rest() -> None:
     assert not point.config.stability.detect
 
 
+def test_quadratic_triangles_have_as_many_nodes_around() -> None:
+    mesh = point_of(Config(), Mechanics(element="quadratic"), Case(), 0).config.mesh
+    assert (mesh.n_around, mesh.n_layers, mesh.n_cortex_layers) == (108, 9, 3)
+    base = Config().with_overrides({"mesh.element": "quadratic", "mesh.n_around": 54})
+    assert point_of(base, Mechanics.of(base), Case(), 0).config.mesh.n_around == 54
+
+
 def test_every_case_is_another_run() -> None:
     keys = {point_of(Config(), Mechanics(), case, 0).key for case in all_cases()}
     assert len(keys) == len(all_cases())
