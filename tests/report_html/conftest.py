@@ -52,7 +52,7 @@ class Opened:
 
     def pixels(self) -> NDArray[np.int64]:
         """(height, width, 3) colours of the scene, drawn now."""
-        script = "() => { const v = gyrify.panel.viewer; v.drawNow(); return v.canvas.toDataURL(); }"
+        script = "() => { const v = gyrify.panel.viewer; v.drawNow(true); return v.canvas.toDataURL(); }"
         png = base64.b64decode(self.run(script).split(",")[1])
         return np.asarray(Image.open(io.BytesIO(png)).convert("RGB"), dtype=np.int64)
 

@@ -52,9 +52,8 @@ def column(opened, name: str) -> list[str]:
     """Texts of a column of the table, as shown."""
     heads = opened.page.locator("table.results thead th").all_inner_texts()
     place = next(k for k, head in enumerate(heads) if head.startswith(name))
-    return opened.run(
-        f"Array.from(document.querySelectorAll('table.results tbody tr'), (r) => r.children[{place}].innerText)"
-    )
+    rows = "document.querySelectorAll('table.results tbody tr')"
+    return opened.run(f"Array.from({rows}, (row) => row.children[{place}].innerText)")
 
 
 def test_the_table_holds_the_results_and_sorts(opened, folder: Path) -> None:

@@ -12,9 +12,8 @@ from gyrify.config.run_sections import OutputField
 from gyrify.solve.types import FloatArray
 from gyrify.store.fields import UNITS
 
-# Colours run between these quantiles, so that a few extreme cells, or points in cusps, do not wash out the
-# others.
-_OUTER: Final = {"cell": 0.005, "contour": 0.02}
+# Colours run between these quantiles, so that cells and points in cusps do not wash out the others.
+_OUTER: Final = 0.02
 # A state that is nearly uniform is coloured over at least this part of the range of the whole run.
 _NARROWEST: Final = 1e-3
 
@@ -114,7 +113,7 @@ def describe(field: ShownField, values: FloatArray) -> dict[str, Any]:
     dict
         With ``range`` [low, high] of the colours over all frames and ``ranges``, one for each frame.
     """
-    whole = colour_range(values, field)
+    whole = colour_range(values, field.colours)
     least = _NARROWEST * (whole[1] - whole[0])
     return {
         "name": field.name,
@@ -124,20 +123,19 @@ def describe(field: ShownField, values: FloatArray) -> dict[str, Any]:
         "colours": field.colours,
         "about": field.about,
         "range": whole,
-        "ranges": [_widened(colour_range(row, field), least) for row in values],
+        "ranges": [_widened(colour_range(row, field.colours), least) for row in values],
     }
 
 
-def colour_range(values: FloatArray, field: ShownField) -> list[float]:
+def colour_range(values: FloatArray, colours: str) -> list[float]:
     """Ends of the colour bar: outer quantiles; for signed fields the same on both sides of zero."""
     finite = values[np.isfinite(values)]
     if finite.size == 0:
         return [-1.0, 1.0]
-    outer = _OUTER[field.place]
-    if field.colours == "diverging":
-        end = float(np.quantile(np.abs(finite), 1.0 - 2.0 * outer)) or 1.0
+    if colours == "diverging":
+        end = float(np.quantile(np.abs(finite), 1.0 - 2.0 * _OUTER)) or 1.0
         return [-end, end]
-    low, high = (float(end) for end in np.quantile(finite, (outer, 1.0 - outer)))
+    low, high = (float(end) for end in np.quantile(finite, (_OUTER, 1.0 - _OUTER)))
     if high > low:
         return [low, high]
     # Mostly one value (no contact yet, say): show what there is.
