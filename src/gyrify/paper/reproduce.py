@@ -12,8 +12,8 @@ from gyrify.paper.cases import BOTH, EQUAL, SOFT, Case, all_cases
 from gyrify.paper.reading import Reading, point_of
 from gyrify.paper.row import Row, row_of
 from gyrify.paper.scoreboard import Scoreboard, score
-from gyrify.paper.stability import stability_thresholds
-from gyrify.paper.threshold import next_states, next_thresholds
+from gyrify.paper.stability import HIGHEST, stability_thresholds
+from gyrify.paper.threshold import next_states, next_thresholds, visible_bracket
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +69,7 @@ def reproduce(
         rows |= known_rows(bench, base, reading, todo, seed)
         searches = (next_thresholds, next_states)
         todo = [case for e in BOTH for search in searches for case in search(rows, e) if case not in rows]
-    remarks = _stability(bench, base, reading, seed) if stability else {}
+    remarks = _stability(bench, base, reading, seed, rows) if stability else {}
     return Reproduction(reading, rows, score(rows, str(reading), remarks))
 
 
@@ -101,11 +101,16 @@ def known_rows(
     return found
 
 
-def _stability(bench: Bench, base: Config, reading: Reading, seed: int) -> dict[str, str]:
-    """Remarks on the rows of thresholds."""
-    configs = [point_of(base, reading.mechanics, Case(e), seed).config for e in (EQUAL, SOFT)]
+def _stability(
+    bench: Bench, base: Config, reading: Reading, seed: int, rows: dict[Case, Row]
+) -> dict[str, str]:
+    """Remarks on the rows of thresholds; stability is lost before folds are seen."""
+    order = (EQUAL, SOFT)
+    configs = [point_of(base, reading.mechanics, Case(e), seed).config for e in order]
+    seen = [visible_bracket(rows, e) for e in order]
+    ends = [HIGHEST if bracket is None else min(1.1 * bracket.high, HIGHEST) for bracket in seen]
     try:
-        found = stability_thresholds(bench, configs)
+        found = stability_thresholds(bench, configs, ends)
     except GyrifyError as failure:
         found = [f"not found ({failure.message})"] * 2
     told = "The smooth slice loses stability (no jitter, no dissipation): growth ratio"

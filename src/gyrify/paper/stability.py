@@ -15,11 +15,13 @@ from gyrify.threshold import critical_growth
 from gyrify.versions import solver_version
 
 FILE: Final = "stability.json"
-_RANGE: Final = (1.0, 4.0)
-_POINTS: Final = 13
+LOWEST: Final = 1.0
+HIGHEST: Final = 4.0
+# Values scanned per unit of growth ratio.
+_DENSITY: Final = 5.0
 
 
-def stability_thresholds(bench: Bench, configs: Sequence[Config]) -> list[str]:
+def stability_thresholds(bench: Bench, configs: Sequence[Config], ends: Sequence[float]) -> list[str]:
     """Critical growth ratios of some slices, in words; kept in ``stability.json`` of the bench's folder.
 
     Parameters
@@ -28,6 +30,8 @@ def stability_thresholds(bench: Bench, configs: Sequence[Config]) -> list[str]:
         Who computes.
     configs : sequence of Config
         The slices.
+    ends : sequence of float
+        Growth ratio up to which each is scanned from 1 on.
 
     Returns
     -------
@@ -36,10 +40,10 @@ def stability_thresholds(bench: Bench, configs: Sequence[Config]) -> list[str]:
     """
     path = bench.folder / FILE
     known = _read(path)
-    keys = [f"{solver_version()}:{config.config_hash}" for config in configs]
+    keys = [f"{solver_version()}:{c.config_hash}:{end:.6g}" for c, end in zip(configs, ends, strict=True)]
     begun = {
-        key: bench.call(_critical, config)
-        for key, config in zip(keys, configs, strict=True)
+        key: bench.call(_critical, config, end)
+        for key, config, end in zip(keys, configs, ends, strict=True)
         if key not in known
     }
     known |= {key: answer() for key, answer in begun.items()}
@@ -50,15 +54,16 @@ def stability_thresholds(bench: Bench, configs: Sequence[Config]) -> list[str]:
     return [known[key] for key in keys]
 
 
-def _critical(config: Config) -> str:
+def _critical(config: Config, end: float) -> str:
+    points = max(3, round(_DENSITY * (end - LOWEST)))
     try:
-        found = critical_growth(config, "growth.ratio", "stability", _RANGE, points=_POINTS)
+        found = critical_growth(config, "growth.ratio", "stability", (LOWEST, end), points=points)
     except GyrifyError as failure:
         return f"not found ({failure.message})"
     except ValueError:  # on a mesh so coarse that no state counts as smooth
         return "not found (no smooth state)"
     if found.critical_value is None:
-        return f"none up to {_RANGE[1]:g}"
+        return f"not up to {end:.3g}"
     return f"{found.critical_value:.3f} (mode {found.mode_number})"
 
 
