@@ -19,7 +19,7 @@ from gyrify.simulation import simulate
 from gyrify.study import Study, run_study
 
 HERE = Path(__file__).parent
-ARGUMENTS = "--headless --no-sandbox --disable-gpu --disable-sync --no-first-run".split()
+ARGUMENTS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-sync", "--no-first-run"]
 SIZE = {"width": 1360, "height": 900}
 STUDY: dict[str, Any] = {
     "base": {
