@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from docutils import nodes
 from docutils.utils.math import MathError
 from docutils.utils.math.latex2mathml import tex2mathml
@@ -9,6 +11,10 @@ from sphinx.application import Sphinx
 from sphinx.util import logging
 from sphinx.writers.html5 import HTML5Translator
 
+# A letter, its index and its accent.
+_UNDER_ACCENT = re.compile(
+    r"<munderover>\s*(<mi>\w</mi>)\s*(<m[in]>\w+</m[in]>)\s*(<mo[^>]*>[ˉˆ˜˙_]</mo>)\s*</munderover>"
+)
 _LOGGER = logging.getLogger(__name__)
 
 
@@ -36,10 +42,15 @@ def _render(node: nodes.Element, as_block: bool) -> str:
     if as_block and r"\\" in latex and r"\begin" not in latex:
         latex = rf"\begin{{aligned}}{latex}\end{{aligned}}"
     try:
-        return tex2mathml(latex, as_block=as_block)
+        return _subscripts_of_accents(tex2mathml(latex, as_block=as_block))
     except MathError as error:
         _LOGGER.warning("equation cannot be read: %s: %s", error, latex, location=node)
         return _escaped(latex)
+
+
+def _subscripts_of_accents(mathml: str) -> str:
+    """Index beside an accented letter; docutils sets it under the letter, like a limit."""
+    return _UNDER_ACCENT.sub(r'<msub><mover accent="true">\1\3</mover>\2</msub>', mathml)
 
 
 def _escaped(latex: str) -> str:

@@ -51,6 +51,7 @@ def test_equations_are_mathml(site: Path) -> None:
     page = (site / "theory.html").read_text(encoding="utf-8")
     assert page.count("<math") > 60
     assert page.count('display="block"') > 12
+    assert re.search(r'<msub><mover accent="true"><mi>J</mi><mo[^>]*>ˉ</mo></mover><mi>p</mi></msub>', page)
     text = re.sub(r"<(math|code|script|style|pre)\b.*?</\1>", "", page, flags=re.DOTALL)
     assert "$" not in text
     assert "\\frac" not in text
