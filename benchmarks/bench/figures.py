@@ -105,7 +105,7 @@ def record(found: dict[str, Figures], *, quick: bool) -> dict[str, Any]:
 
 
 def _written(figure: Figure) -> dict[str, Any]:
-    return {key: value for key, value in asdict(figure).items() if value not in (None, False, "")}
+    return {key: value for key, value in asdict(figure).items() if value is not None and value is not False}
 
 
 def append(entry: dict[str, Any], path: Path = HISTORY) -> None:

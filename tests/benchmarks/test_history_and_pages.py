@@ -42,6 +42,12 @@ def test_latest_full_record_of_every_case_counts(tmp_path: Path) -> None:
     assert len(history.read_text().splitlines()) == 4
 
 
+def test_zero_is_a_value(tmp_path: Path) -> None:
+    history = tmp_path / "history.jsonl"
+    append(record({"a": [Figure("rejected", 0), Figure("ratio", 1.0, "x")]}, quick=False), history)
+    assert list(latest(history)["a"][1].values()) == [Figure("rejected", 0), Figure("ratio", 1.0, "x")]
+
+
 def test_record_tells_of_versions_but_not_of_whose_machine_it_is() -> None:
     entry = record({"a": [Figure("solve", np.float64(1.5), "s")]}, quick=False)
     assert entry["versions"]["numpy"] == np.__version__
