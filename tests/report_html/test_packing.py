@@ -18,7 +18,7 @@ from gyrify.errors import HistoryError
 from gyrify.report.html import page, run_page, write_page
 from gyrify.report.html.frames import frames_of, packed_frames, spread
 from gyrify.report.html.packing import Payload, coded
-from gyrify.report.html.shown import colour_range
+from gyrify.report.html.shown import SHOWN, colour_range, describe
 from gyrify.simulation import simulate
 from gyrify.store import History
 
@@ -82,7 +82,10 @@ def test_states_are_spread_evenly() -> None:
 def test_signed_fields_have_zero_in_the_middle(rng: np.random.Generator) -> None:
     low, high = colour_range(rng.normal(1.0, 1.0, (3, 500)), "diverging")
     assert low == -high < 0.0
-    assert colour_range(np.full((2, 9), 1.5), "sequential") == [1.0, 2.0]
+    thickness = next(field for field in SHOWN if field.name == "thickness")
+    assert describe(thickness, np.full((2, 9), 1.5))["range"] == [1.0, 2.0]
+    grown = describe(thickness, np.array([np.full(9, 1.0), np.linspace(2.0, 3.0, 9)]))
+    assert grown["range"] == [1.0, grown["ranges"][1][1]]
     # A few extreme values do not decide.
     assert colour_range(np.append(np.linspace(0.0, 1.0, 999), 1e6)[None], "sequential")[1] < 1.0
 

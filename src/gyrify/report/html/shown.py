@@ -111,9 +111,10 @@ def describe(field: ShownField, values: FloatArray) -> dict[str, Any]:
     Returns
     -------
     dict
-        With ``range`` [low, high] of the colours over all frames and ``ranges``, one for each frame.
+        With ``ranges`` [low, high] of the colours of each frame, and ``range``, which covers them all.
     """
-    whole = colour_range(values, field.colours)
+    ranges = [colour_range(row, field.colours) for row in values]
+    whole = _widened([min(low for low, _ in ranges), max(high for _, high in ranges)], 0.0)
     least = _NARROWEST * (whole[1] - whole[0])
     return {
         "name": field.name,
@@ -123,26 +124,26 @@ def describe(field: ShownField, values: FloatArray) -> dict[str, Any]:
         "colours": field.colours,
         "about": field.about,
         "range": whole,
-        "ranges": [_widened(colour_range(row, field.colours), least) for row in values],
+        "ranges": [_widened(ends, least) for ends in ranges],
     }
 
 
 def colour_range(values: FloatArray, colours: str) -> list[float]:
-    """Ends of the colour bar: outer quantiles; for signed fields the same on both sides of zero."""
+    """Ends of the colours of one state: outer quantiles; for signed fields as far on both sides of zero."""
     finite = values[np.isfinite(values)]
     if finite.size == 0:
-        return [-1.0, 1.0]
+        return [0.0, 0.0]
     if colours == "diverging":
-        end = float(np.quantile(np.abs(finite), 1.0 - 2.0 * _OUTER)) or 1.0
+        end = float(np.quantile(np.abs(finite), 1.0 - 2.0 * _OUTER))
         return [-end, end]
     low, high = (float(end) for end in np.quantile(finite, (_OUTER, 1.0 - _OUTER)))
     if high > low:
         return [low, high]
-    # Mostly one value (no contact yet, say): show what there is.
-    low, high = float(finite.min()), float(finite.max())
-    return [low, high] if high > low else [low - 0.5, high + 0.5]
+    # Nearly everywhere one value (hardly any contact yet, say): show what there is.
+    return [float(finite.min()), float(finite.max())]
 
 
 def _widened(ends: list[float], least: float) -> list[float]:
+    """At least so wide, about the same middle; a range without any width becomes 1 wide."""
     middle, half = 0.5 * (ends[0] + ends[1]), 0.5 * max(ends[1] - ends[0], least)
-    return [middle - half, middle + half]
+    return [middle - half, middle + half] if half > 0.0 else [middle - 0.5, middle + 0.5]
