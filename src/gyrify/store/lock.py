@@ -52,7 +52,9 @@ def run_lock(folder: Path, what: str = "run") -> Iterator[str]:
             ) from held
     try:
         stale = (
-            f"{_describe(owner)} ended without closing this {what}; it is taken over." if owner.exists() else ""
+            f"{_describe(owner)} ended without closing this {what}; it is taken over."
+            if owner.exists()
+            else ""
         )
         with storage_faults(folder):
             owner.write_text(json.dumps({"pid": os.getpid(), "host": socket.gethostname()}), encoding="utf-8")
