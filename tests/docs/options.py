@@ -25,6 +25,8 @@ def _unknown(words: list[str]) -> list[str]:
     while words and words[0] in command and not words[0].startswith("-"):
         names.append(words[0])
         command = command[words.pop(0)]
+    if not names and words[:1] in (["--version"], ["--help"]):
+        return []
     if not names:
         return [f"gyrify {' '.join(words[:1])}"]
     used = [word.partition("=")[0] for word in words if word.startswith("--")]

@@ -20,6 +20,14 @@ def test_languages_and_notes_are_known() -> None:
     assert not found, "\n".join(found)
 
 
+def test_commands_and_options_exist() -> None:
+    scripts = [block for page in PAGES for block in BLOCKS[page] if block.language == "sh"]
+    assert len(scripts) > 40
+    expected = [block for block in scripts if block.value("exits") != "2"]
+    found = {block.place: unknown_options(block.text) for block in expected}
+    assert {place: unknown for place, unknown in found.items() if unknown} == {}
+
+
 @pytest.mark.parametrize("page", WITH_BLOCKS, ids=lambda page: page.stem)
 def test_quick_blocks(page: Path, tmp_path: Path) -> None:
     quick = [block for block in BLOCKS[page] if not block.is_slow]
