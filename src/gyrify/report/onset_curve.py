@@ -36,7 +36,7 @@ COVERED: Final = (
     "material.poisson_ratio_white",
     "growth.rate",
 )
-_SECTIONS: Final = 9
+_SECTIONS: Final = 12
 _SCAN: Final = 7
 _ACCURACY: Final = 1e-3
 _SMOOTH: Final = 160

@@ -139,20 +139,25 @@ def _draw_cells(
     for number, cell in enumerate(cells):
         colour, text = _look(cell, norm, is_index)
         if boxes is None:
-            marker = {"markerfacecolor": colour, "markeredgecolor": "0.2", "markeredgewidth": 0.5}
-            axes.plot(*cell.at, "o" if cell.gi else "X", markersize=8, zorder=3, **marker)
-            continue
-        x0, y0, x1, y1 = boxes[number]
-        shape = Rectangle((x0, y0), x1 - x0, y1 - y0, facecolor=colour, edgecolor="white", linewidth=0.4)
-        if not cell.gi:
-            shape.set_hatch("////")
-        axes.add_patch(shape)
-        if len(cells) <= _MOST_TEXTS:
-            dark = np.dot(to_rgb(colour), (0.299, 0.587, 0.114)) < 0.5
-            ink = "white" if dark else "#1f1f1f"
-            halo = [patheffects.withStroke(linewidth=1.5, foreground=colour)]
-            style: dict[str, Any] = {"fontsize": 6, "ha": "center", "va": "center", "path_effects": halo}
-            axes.text(cell.at[0], cell.at[1], text, color=ink, zorder=5, **style)
+            marker: dict[str, Any] = {"markerfacecolor": colour, "markeredgecolor": "0.2"}
+            shape = "o" if cell.gi else "X"
+            axes.plot(*cell.at, shape, markersize=9, markeredgewidth=0.5, zorder=5, **marker)
+        else:
+            x0, y0, x1, y1 = boxes[number]
+            box = Rectangle((x0, y0), x1 - x0, y1 - y0, facecolor=colour, edgecolor="white", linewidth=0.4)
+            if not cell.gi:
+                box.set_hatch("////")
+            axes.add_patch(box)
+        if len(cells) <= _MOST_TEXTS and (boxes is not None or (cell.gi and not is_index)):
+            _write(axes, cell, text, colour)
+
+
+def _write(axes: Axes, cell: Cell, text: str, colour: Any) -> None:
+    """Write into a cell, legible on its colour."""
+    dark = np.dot(to_rgb(colour), (0.299, 0.587, 0.114)) < 0.5
+    halo = [patheffects.withStroke(linewidth=1.5, foreground=colour)]
+    style: dict[str, Any] = {"fontsize": 6, "ha": "center", "va": "center", "path_effects": halo}
+    axes.text(cell.at[0], cell.at[1], text, color="white" if dark else "#1f1f1f", zorder=6, **style)
 
 
 def _look(cell: Cell, norm: Normalize, is_index: bool) -> tuple[Any, str]:
