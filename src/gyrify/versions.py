@@ -5,7 +5,7 @@ from __future__ import annotations
 import platform
 from importlib import metadata
 
-LIBRARIES = ("gyrify", "numpy", "scipy", "numba", "ipctk", "shapely", "pypardiso", "mkl")
+LIBRARIES = ("gyrify", "numpy", "scipy", "numba", "ipctk", "shapely", "mkl")
 
 
 def versions() -> dict[str, str]:

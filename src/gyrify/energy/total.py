@@ -83,6 +83,17 @@ class TotalEnergy:
                 return np.inf
         return total
 
+    def slope(self, u: FloatArray) -> tuple[float, FloatArray]:
+        """Total energy [Pa mm^2] and its gradient [Pa mm]; infinite and zero where not admissible."""
+        total, gradient = 0.0, np.zeros_like(u)
+        for term in self.terms:
+            evaluation = term.evaluate(u, 1)
+            total += evaluation.value
+            if evaluation.gradient is None:
+                return np.inf, np.zeros_like(u)
+            gradient += evaluation.gradient
+        return total, gradient
+
     def evaluate(self, u: FloatArray, project_psd: bool) -> list[Evaluation]:
         """Each term with its Hessian, for the solver to sum on a pattern that holds them all."""
         return [term.evaluate(u, 2, project_psd) for term in self.terms]
