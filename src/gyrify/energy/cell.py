@@ -7,7 +7,6 @@ numba's cache by the next process.
 
 from __future__ import annotations
 
-import numpy as np
 from numba import njit
 
 # The functions below write into their last arguments; numba compiles them without annotations.
@@ -46,14 +45,8 @@ def invert(n_dim, F, H):
     return det
 
 
-@njit(cache=True, inline="always")
-def step_to_inversion(F, D):
-    """Smallest positive root of det(F + s D) = 0 in the plane, or 1 if that is smaller."""
-    p = D[0, 0] * D[1, 1] - D[0, 1] * D[1, 0]
-    q = F[0, 0] * D[1, 1] + F[1, 1] * D[0, 0] - F[0, 1] * D[1, 0] - F[1, 0] * D[0, 1]
-    r = F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0]
-    discriminant = q * q - 4.0 * p * r
-    # 2 r / (sqrt - q) is the smallest positive root for every sign of p, without cancellation
-    if discriminant >= 0.0 and np.sqrt(discriminant) > q:
-        return min(1.0, 2.0 * r / (np.sqrt(discriminant) - q))
-    return 1.0
+@njit(cache=True)
+def scatter_add(source, target, values, data):
+    """data[target] += values[source], entry by entry."""
+    for n in range(source.size):
+        data[target[n]] += values[source[n]]

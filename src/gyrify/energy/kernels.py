@@ -12,16 +12,19 @@ import numpy as np
 from numba import njit
 
 from gyrify.energy import cell, lanes, projection
-from gyrify.energy.cell import deform, invert, step_to_inversion
+from gyrify.energy.cell import deform, invert
 from gyrify.energy.lanes import (
     LANES,
     add_forces,
     add_matrices,
+    add_products,
     add_projected,
     energy,
     gather,
     invariants,
+    load,
     nodal_vectors,
+    step_to_inversion,
     weigh_moduli,
 )
 from gyrify.energy.lanes import invert as invert_all
@@ -85,7 +88,10 @@ def _accumulate(n_dim: int, n_nodes: int, digest: int) -> Any:
         value = 0.0
         for first in range(0, cells.shape[0], LANES):
             n = min(LANES, cells.shape[0] - first)
-            gather(n_dim, n_nodes, first, n, u, cells, base, gradients, x, g, F)
+            gather(n_dim, n_nodes, first, n, u, cells, x)
+            load(n_nodes, n_dim, first, n, gradients, g)
+            load(n_dim, n_dim, first, n, base, F)
+            add_products(n_dim, n_nodes, n, x, g, F)
             if not invert_all(n_dim, n, F, H, det) > 0.0:
                 return np.inf
             invariants(n_dim, first, n, F, det, f33, I1, J, root)
@@ -105,23 +111,30 @@ def _accumulate(n_dim: int, n_nodes: int, digest: int) -> Any:
 
 
 def _largest_step(n_dim: int, n_nodes: int, digest: int) -> Any:
-    @njit(cache=True)
+    @njit(cache=True, error_model="numpy")
     def largest_step(u, du, cells, base, gradients):  # type: ignore[no-untyped-def]
         """Smallest positive root over the points of det(F + s D) = 0, at most 1.
 
         In the plane the determinant is a quadratic in s with an exact root; in space the step is halved
         until nothing is inverted at its end.
         """
-        F, D, H = np.empty((n_dim, n_dim)), np.empty((n_dim, n_dim)), np.empty((n_dim + 0 * digest, n_dim))
-        zero = np.zeros((n_dim, n_dim))
+        x, g = np.empty((n_nodes, n_dim, LANES)), np.empty((n_nodes, n_dim, LANES))
+        F, D = np.empty((n_dim + 0 * digest, n_dim, LANES)), np.empty((n_dim, n_dim, LANES))
+        H, scratch = np.empty((n_dim, n_dim, LANES)), np.empty(LANES)
         largest = 1.0
-        for c in range(cells.shape[0]):
-            deform(n_dim, n_nodes, u, cells[c], base[c], gradients[c], F)
-            deform(n_dim, n_nodes, du, cells[c], zero, gradients[c], D)
+        for first in range(0, cells.shape[0], LANES):
+            n = min(LANES, cells.shape[0] - first)
+            gather(n_dim, n_nodes, first, n, u, cells, x)
+            load(n_nodes, n_dim, first, n, gradients, g)
+            load(n_dim, n_dim, first, n, base, F)
+            add_products(n_dim, n_nodes, n, x, g, F)
+            gather(n_dim, n_nodes, first, n, du, cells, x)
+            D[:] = 0.0
+            add_products(n_dim, n_nodes, n, x, g, D)
             if n_dim == 2:
-                largest = min(largest, step_to_inversion(F, D))
+                largest = min(largest, step_to_inversion(n, F, D, scratch))
             else:
-                while largest > 1e-12 and not invert(n_dim, F + largest * D, H) > 0.0:
+                while largest > 1e-12 and not invert_all(n_dim, n, F + largest * D, H, scratch) > 0.0:
                     largest *= 0.5
         return largest
 
@@ -129,7 +142,7 @@ def _largest_step(n_dim: int, n_nodes: int, digest: int) -> Any:
 
 
 def _grow(n_dim: int, n_nodes: int, digest: int) -> Any:
-    @njit(cache=True)
+    @njit(cache=True, error_model="numpy")
     def grow(F_g, gradients, base, grown, det):  # type: ignore[no-untyped-def]
         """Write F_g^{-1}, the gradients with respect to the grown cell, and det F_g in the plane."""
         H = np.empty((n_dim + 0 * digest, n_dim))
@@ -148,7 +161,7 @@ def _grow(n_dim: int, n_nodes: int, digest: int) -> Any:
 
 
 def _volume_ratio(n_dim: int, n_nodes: int, digest: int) -> Any:
-    @njit(cache=True)
+    @njit(cache=True, error_model="numpy")
     def volume_ratio(u, cells, gradients, ratio):  # type: ignore[no-untyped-def]
         """Write det(I + grad u)."""
         F, H, identity = np.empty((n_dim, n_dim)), np.empty((n_dim + 0 * digest, n_dim)), np.eye(n_dim)

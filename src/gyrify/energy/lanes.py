@@ -24,16 +24,26 @@ LANES = 64
 
 
 @njit(cache=True, inline="always")
-def gather(n_dim, n_nodes, first, n, u, cells, base, gradients, x, g, F):
-    """F = base + sum_a u_a (x) g_a of ``n`` points from ``first``, with their g_a."""
+def gather(n_dim, n_nodes, first, n, u, cells, x):
+    """Rows of ``u`` at the nodes of ``n`` points from ``first``."""
     for l in range(n):
-        c = first + l
         for a in range(n_nodes):
             for i in range(n_dim):
-                x[a, i, l], g[a, i, l] = u[cells[c, a], i], gradients[c, a, i]
-        for i in range(n_dim):
-            for j in range(n_dim):
-                F[i, j, l] = base[c, i, j]
+                x[a, i, l] = u[cells[first + l, a], i]
+
+
+@njit(cache=True, inline="always")
+def load(n_rows, n_columns, first, n, matrices, M):
+    """Matrices of ``n`` points from ``first``, given with the point as the first axis."""
+    for l in range(n):
+        for i in range(n_rows):
+            for j in range(n_columns):
+                M[i, j, l] = matrices[first + l, i, j]
+
+
+@njit(cache=True, inline="always")
+def add_products(n_dim, n_nodes, n, x, g, F):
+    """Add sum_a x_a (x) g_a."""
     for i in range(n_dim):
         for j in range(n_dim):
             for a in range(n_nodes):
@@ -63,6 +73,28 @@ def invert(n_dim, n, F, H, det):
         # a comparison that is false for NaN, which must not pass for a volume
         if not det[l] >= smallest:
             smallest = det[l]
+    return smallest
+
+
+@njit(cache=True, inline="always")
+def step_to_inversion(n, F, D, steps):
+    """Smallest positive root of det(F + s D) = 0 in the plane of each point, or 1; the smallest of all."""
+    for l in range(n):
+        p = D[0, 0, l] * D[1, 1, l] - D[0, 1, l] * D[1, 0, l]
+        q = (
+            F[0, 0, l] * D[1, 1, l]
+            + F[1, 1, l] * D[0, 0, l]
+            - F[0, 1, l] * D[1, 0, l]
+            - F[1, 0, l] * D[0, 1, l]
+        )
+        r = F[0, 0, l] * F[1, 1, l] - F[0, 1, l] * F[1, 0, l]
+        # 2 r / (sqrt - q) is the smallest positive root for every sign of p, without cancellation
+        below = np.sqrt(max(q * q - 4.0 * p * r, 0.0)) - q
+        has_root = q * q >= 4.0 * p * r and below > 0.0
+        steps[l] = 2.0 * r / below if has_root else 1.0
+    smallest = 1.0
+    for l in range(n):
+        smallest = min(smallest, steps[l])
     return smallest
 
 

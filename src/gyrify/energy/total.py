@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from gyrify.energy.cell import scatter_add
 from gyrify.energy.term import EnergyTerm, Evaluation, FloatArray, IntArray, Pattern
 
 
@@ -43,8 +44,7 @@ class FreePattern:
         mapped = self._map(pattern)
         if mapped is None:
             raise ValueError("the pattern of a term is not held by the pattern of the sum")
-        source, target = mapped
-        data[target] += values[source]
+        scatter_add(*mapped, values, data)
 
     def _map(self, pattern: Pattern) -> tuple[IntArray, IntArray] | None:
         """Which entries of a term go where; kept for as long as the term keeps its pattern."""
