@@ -146,7 +146,7 @@ class Run:
             watch()
             self._limits()
 
-        detector = Detector(problem, stepping, self.journal.onset is not None, look)
+        detector = Detector(problem, stepping, self.journal.onset is not None, self.journal.state, look)
         inspect = (detector.inspect,) if problem.config.stability.detect else ()
         clock = begun
         try:

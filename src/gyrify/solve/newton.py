@@ -69,13 +69,12 @@ class Iterate:
 
 def minimise(
     total: TotalEnergy,
-    u: FloatArray,
+    start: FloatArray | Iterate,
     system: System,
     criterion: Criterion,
     candidates: Callable[[FloatArray], IntArray],
     watch: Callable[[], None] = lambda: None,
     mass: FloatArray | None = None,
-    reuse: Reuse | None = None,
 ) -> Solution:
     """Minimise the total energy from a starting state.
 
@@ -83,8 +82,8 @@ def minimise(
     ----------
     total : TotalEnergy
         What to minimise.
-    u : (n_points, n_dim) float array
-        Admissible starting state [mm].
+    start : (n_points, n_dim) float array or Iterate
+        Admissible starting state [mm], evaluated already or not.
     system : System
         Linear system of the free degrees of freedom.
     criterion : Criterion
@@ -96,16 +95,14 @@ def minimise(
     mass : (n_free,) float array, optional
         Lumped area [mm^2]: an indefinite Hessian is then shifted by a multiple of it instead of projected,
         which is what leads along the flat valleys of a tissue that buckles without dissipation.
-    reuse : Reuse, optional
-        An earlier factor to begin with; holds the last one afterwards.
 
     Returns
     -------
     Solution
     """
     before = (system.factorizations, system.analyses)
-    reuse = Reuse() if reuse is None else reuse
-    at = Iterate.at(total, u, system)
+    reuse = Reuse()
+    at = start if isinstance(start, Iterate) else Iterate.at(total, start, system)
     # MAX_NEWTON is what it comes to unless something else happens first.
     result, iteration = Result.MAX_NEWTON if np.isfinite(at.value) else Result.INADMISSIBLE, 0
     while result is Result.MAX_NEWTON:

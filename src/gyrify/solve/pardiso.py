@@ -73,16 +73,16 @@ class Pardiso:
     def factorise(self, data: FloatArray) -> PardisoFactor:
         """See `LinearSolver`."""
         if self._indefinite is None:
-            # At most one step of iterative refinement; pivots below 1e-8 of the norm are perturbed; 1 x 1 and
-            # 2 x 2 pivots give the exact inertia of indefinite matrices.
-            self._indefinite = _Matrices(_INDEFINITE, *self._pattern, {7: 1, 9: 8, 20: 1})
+            # Minimum degree, at most one step of iterative refinement; pivots below 1e-8 of the norm are perturbed;
+            # 1 x 1 and 2 x 2 pivots give the exact inertia of indefinite matrices.
+            self._indefinite = _Matrices(_INDEFINITE, *self._pattern, {1: 0, 7: 1, 9: 8, 20: 1})
         return self._indefinite.factorise(data)
 
     def factorise_definite(self, data: FloatArray) -> PardisoFactor | None:
         """See `LinearSolver`."""
         if self._definite is None:
-            # Two-level factorisation: faster, even on one thread; it may overlook a pivot next to zero.
-            self._definite = _Matrices(_DEFINITE, *self._pattern, {23: 1})
+            # Nested dissection; two-level factorisation, which is faster, even on one thread; it may overlook a pivot next to zero.
+            self._definite = _Matrices(_DEFINITE, *self._pattern, {1: 2, 23: 1})
         try:
             return self._definite.factorise(data)
         except NotDefiniteError:
@@ -103,7 +103,6 @@ class _Matrices:
         self._handle = np.zeros(64, dtype=np.int64)
         self._iparm = np.zeros(64, dtype=np.int32)
         self._iparm[0] = 1  # the values given, not the defaults
-        self._iparm[1] = 2  # nested dissection
         for number, value in parameters.items():
             self._iparm[number] = value
         # Kept alive here, because PARDISO is given their addresses.
