@@ -10,8 +10,8 @@ import numpy as np
 from gyrify.energy.total import TotalEnergy
 from gyrify.errors import SolveError
 from gyrify.solve.linear import Factor
+from gyrify.solve.quasi_newton import QuasiNewton
 from gyrify.solve.result import Result, Solution, Stats
-from gyrify.solve.reuse import Reuse
 from gyrify.solve.shift import shifted_factor
 from gyrify.solve.system import System
 from gyrify.solve.types import FloatArray, IntArray
@@ -101,8 +101,8 @@ def minimise(
     Solution
     """
     before = (system.factorizations, system.analyses)
-    reuse = Reuse()
     at = start if isinstance(start, Iterate) else Iterate.at(total, start, system)
+    model = QuasiNewton()
     # MAX_NEWTON is what it comes to unless something else happens first.
     result, iteration = Result.MAX_NEWTON if np.isfinite(at.value) else Result.INADMISSIBLE, 0
     while result is Result.MAX_NEWTON:
@@ -112,20 +112,23 @@ def minimise(
         if result is Result.CONVERGED or iteration == criterion.max_iterations:
             break
         iteration += 1
-        is_old = reuse.serves(at.residual, criterion.force)
+        is_old = model.serves(at.residual, criterion.force)
         try:
             if not is_old:
-                reuse.renew(_definite_factor(total, at.u, system, candidates, mass))
-            du = _direction(reuse, at, system)
-            step, after, result = _line_search(total, at, du, system)
+                model.renew(_definite_factor(total, at.u, system, candidates, mass))
+            du = model.direction(at.gradient)
         except SolveError:
             result = Result.SINGULAR
             break
-        if result is Result.MAX_NEWTON:
-            reuse.learn(at.residual, after.residual, step)
-        elif is_old:
-            reuse.drop()
+        step, after, result = _line_search(total, at, du, system)
+        if result is not Result.MAX_NEWTON and is_old:
+            # an old factor may fail where a new one does not
+            model.renew(None)
             result = Result.MAX_NEWTON
+        elif result is Result.MAX_NEWTON:
+            # a shortened step says nothing of the next one
+            contraction = min(1.0, after.residual / at.residual) if step == 1.0 else 1.0
+            model.learn(step * du, after.gradient - at.gradient, contraction)
         at = after
     work = Stats(iteration, system.factorizations - before[0], system.analyses - before[1])
     return Solution(at.u, result, at.residual, work)
@@ -157,20 +160,15 @@ def _definite_factor(
     return system.factorise_data(data)
 
 
-def _direction(reuse: Reuse, at: Iterate, system: System) -> FloatArray:
-    """(n_points, n_dim) Newton direction [mm], or that of an earlier Hessian."""
-    assert reuse.factor is not None
-    du = np.zeros(system.n_dofs)
-    du[system.free] = -reuse.factor.solve(at.gradient)
-    return du.reshape(at.u.shape)
-
-
 def _line_search(
-    total: TotalEnergy, at: Iterate, du: FloatArray, system: System
+    total: TotalEnergy, at: Iterate, direction: FloatArray, system: System
 ) -> tuple[float, Iterate, Result]:
     """First step of a halving sequence that lowers the energy enough, where it leads, and how to go on."""
     # not a product of BLAS, whose sums depend on the number of threads
-    slope = float(np.einsum("i,i->", at.gradient, du.ravel()[system.free]))
+    slope = float(np.einsum("i,i->", at.gradient, direction))
+    du = np.zeros(system.n_dofs)
+    du[system.free] = direction
+    du = du.reshape(at.u.shape)
     step = total.max_step(at.u, du)
     if step < SMALLEST_STEP:
         return 0.0, at, Result.BLOCKED

@@ -73,15 +73,16 @@ class Pardiso:
     def factorise(self, data: FloatArray) -> PardisoFactor:
         """See `LinearSolver`."""
         if self._indefinite is None:
-            # Minimum degree, at most one step of iterative refinement; pivots below 1e-8 of the norm are perturbed;
-            # 1 x 1 and 2 x 2 pivots give the exact inertia of indefinite matrices.
+            # Minimum degree, at most one step of iterative refinement; pivots below 1e-8 of the norm are
+            # perturbed; 1 x 1 and 2 x 2 pivots give the exact inertia of indefinite matrices.
             self._indefinite = _Matrices(_INDEFINITE, *self._pattern, {1: 0, 7: 1, 9: 8, 20: 1})
         return self._indefinite.factorise(data)
 
     def factorise_definite(self, data: FloatArray) -> PardisoFactor | None:
         """See `LinearSolver`."""
         if self._definite is None:
-            # Nested dissection; two-level factorisation, which is faster, even on one thread; it may overlook a pivot next to zero.
+            # Nested dissection and the two-level factorisation, which is faster even on one thread, but may
+            # overlook a negative pivot next to zero.
             self._definite = _Matrices(_DEFINITE, *self._pattern, {1: 2, 23: 1})
         try:
             return self._definite.factorise(data)
