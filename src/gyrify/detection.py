@@ -76,24 +76,24 @@ class Detector:
         if not (conservative or end or after.index % EVERY == 0):
             return after
         try:
-            self.look(before, after)
+            n_negative = self._look(before, after)
         except SolveError:
             if conservative:
                 raise
-        if conservative and self.n_negative:
-            return self._leave(before, after)
-        return after
+            return after
+        return self._leave(before, after) if conservative and n_negative > 0 else after
 
-    def look(self, before: State, after: State) -> None:
+    def _look(self, before: State, after: State) -> int:
         """Count the negative pivots of an increment; locate the onset if it lies since the last look."""
         if self._system is None:
             self._system = self.problem.system(after.couplings)
-        self.n_negative = self._tangent(after, before, self._system).n_negative
-        if self.n_negative > 0 and not self.found:
+        self.n_negative = n_negative = self._tangent(after, before, self._system).n_negative
+        if n_negative > 0 and not self.found:
             stable, unstable = self._first_unstable(before, after)
             system = self._system_for(unstable)
             self.onset = locate_onset(self.problem, self.stepping, stable, unstable, system, self.watch)
             self.found = True
+        return n_negative
 
     def _first_unstable(self, before: State, after: State) -> tuple[State, State]:
         """By bisection, neighbouring increments since the last look, stable and unstable, up to ``after``."""

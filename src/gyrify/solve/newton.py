@@ -166,9 +166,10 @@ def _line_search(
     """First step of a halving sequence that lowers the energy enough, where it leads, and how to go on."""
     # not a product of BLAS, whose sums depend on the number of threads
     slope = float(np.einsum("i,i->", at.gradient, direction))
-    du = np.zeros(system.n_dofs)
-    du[system.free] = direction
-    du = du.reshape(at.u.shape)
+    if not slope < 0.0:  # a negative pivot next to zero was overlooked
+        return 0.0, at, Result.LINE_SEARCH
+    du = np.zeros(at.u.shape)
+    du.ravel()[system.free] = direction
     step = total.max_step(at.u, du)
     if step < SMALLEST_STEP:
         return 0.0, at, Result.BLOCKED
