@@ -27,7 +27,13 @@ def prominent_maxima(profile: FloatArray, prominence: float) -> NDArray[np.int64
         Indices in increasing order; of a plateau, its middle.
     """
     peaks = _maxima(profile)
-    return peaks[[_prominence(profile, peak) >= prominence for peak in peaks.tolist()]]
+    if peaks.size == 0:
+        return peaks
+    heights = profile[peaks]
+    valleys = np.minimum.reduceat(profile, np.concatenate([[0], peaks]))
+    left = _lowest_before(heights.tolist(), valleys[:-1].tolist())
+    right = _lowest_before(heights[::-1].tolist(), valleys[:0:-1].tolist())[::-1]
+    return peaks[heights - np.maximum(left, right) >= prominence]
 
 
 def _maxima(profile: FloatArray) -> NDArray[np.int64]:
@@ -39,12 +45,13 @@ def _maxima(profile: FloatArray) -> NDArray[np.int64]:
     return np.asarray((starts[above] + ends[above]) // 2, dtype=np.int64)
 
 
-def _prominence(profile: FloatArray, peak: int) -> float:
-    """Height above the higher of the lowest points on either side, each up to where something is higher."""
-    height = profile[peak]
-    higher = profile > height
-    left = np.flatnonzero(higher[:peak])
-    right = np.flatnonzero(higher[peak:])
-    first = int(left[-1]) + 1 if left.size else 0
-    last = peak + int(right[0]) if right.size else profile.size
-    return float(height - max(profile[first : peak + 1].min(), profile[peak:last].min()))
+def _lowest_before(heights: list[float], valleys: list[float]) -> list[float]:
+    """Lowest valley between each peak and the next higher one before it; each valley lies before its peak."""
+    found: list[float] = []
+    falling: list[tuple[float, float]] = []
+    for height, lowest in zip(heights, valleys, strict=True):
+        while falling and falling[-1][0] <= height:
+            lowest = min(lowest, falling.pop()[1])
+        falling.append((height, lowest))
+        found.append(lowest)
+    return found
