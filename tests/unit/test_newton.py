@@ -171,6 +171,7 @@ class Pull:
     longest: float = np.inf
     refuses_after: float = np.inf
     shift_mass: np.ndarray | None = None
+    old_steps: int = 0
     is_path_kept: bool = False
 
     def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:  # noqa: ARG002

@@ -10,7 +10,7 @@ import numpy as np
 from gyrify.energy.total import TotalEnergy
 from gyrify.errors import SolveError
 from gyrify.solve.linear import Factor
-from gyrify.solve.quasi_newton import QuasiNewton
+from gyrify.solve.quasi_newton import STEPS, QuasiNewton
 from gyrify.solve.result import Result, Solution, Stats
 from gyrify.solve.shift import shifted_factor
 from gyrify.solve.system import System
@@ -75,6 +75,7 @@ def minimise(
     candidates: Callable[[FloatArray], IntArray],
     watch: Callable[[], None] = lambda: None,
     mass: FloatArray | None = None,
+    old_steps: int = STEPS,
 ) -> Solution:
     """Minimise the total energy from a starting state.
 
@@ -95,6 +96,8 @@ def minimise(
     mass : (n_free,) float array, optional
         Lumped area [mm^2]: an indefinite Hessian is then shifted by a multiple of it instead of projected,
         which is what leads along the flat valleys of a tissue that buckles without dissipation.
+    old_steps : int
+        How many steps with an old Hessian are worth trying; see `QuasiNewton`.
 
     Returns
     -------
@@ -102,7 +105,7 @@ def minimise(
     """
     before = (system.factorizations, system.analyses)
     at = start if isinstance(start, Iterate) else Iterate.at(total, start, system)
-    model = QuasiNewton()
+    model = QuasiNewton(old_steps)
     # MAX_NEWTON is what it comes to unless something else happens first.
     result, iteration = Result.MAX_NEWTON if np.isfinite(at.value) else Result.INADMISSIBLE, 0
     while result is Result.MAX_NEWTON:

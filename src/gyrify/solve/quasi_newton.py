@@ -26,19 +26,22 @@ class QuasiNewton:
 
     Attributes
     ----------
+    steps : int
+        How many steps with an old factor are worth trying; 0 for plain Newton.
     factor : Factor or None
         The factor; None where there is none to use again.
     contraction : float
         Residual after the last step over the residual before it [-].
     """
 
+    steps: int = STEPS
     factor: Factor | None = None
     contraction: float = 1.0
     _pairs: list[tuple[FloatArray, FloatArray, float]] = field(default_factory=list, repr=False)
 
     def serves(self, residual: float, goal: float) -> bool:
         """Whether so few more steps can be expected to reach the goal."""
-        return self.factor is not None and residual * self.contraction**STEPS <= goal
+        return self.factor is not None and self.steps > 0 and residual * self.contraction**self.steps <= goal
 
     def renew(self, factor: Factor | None) -> None:
         """Take a new factor, or none."""

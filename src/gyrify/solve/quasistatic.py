@@ -74,6 +74,11 @@ class Problem(Protocol):
         ...
 
     @property
+    def old_steps(self) -> int:
+        """How many steps with an old Hessian are worth trying; see `gyrify.solve.newton.minimise`."""
+        ...
+
+    @property
     def is_path_kept(self) -> bool:
         """Whether to stay on a branch of equilibria where it turns unstable, for `inspect` to see that."""
         ...
@@ -212,7 +217,14 @@ def _attempt(
     if solution is None:
         guess = _predict(total, state, span, system)
         solution = minimise(
-            total, guess, system, stepping.criterion, problem.candidates, watch, problem.shift_mass
+            total,
+            guess,
+            system,
+            stepping.criterion,
+            problem.candidates,
+            watch,
+            problem.shift_mass,
+            problem.old_steps,
         )
     if solution.result is Result.CONVERGED and not problem.is_path_admissible(state.u, solution.u):
         return replace(solution, result=Result.CROSSING_PATH)
