@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN = $(VENV)/bin
 
-.PHONY: run test check slow mutants clean
+.PHONY: run test check slow mutants docs bench clean
 
 run: $(VENV)/.run
 	$(BIN)/gyrify run --preset reference-slice --out runs/reference-slice --overwrite
@@ -16,6 +16,10 @@ test: $(VENV)/.test
 
 slow: $(VENV)/.test
 	$(BIN)/python -m pytest -m slow -n auto
+
+docs: $(VENV)/.docs
+	$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build
+	@echo "docs/_build/index.html"
 
 mutants: $(VENV)/.test
 	$(BIN)/python tools/mutants.py
@@ -30,8 +34,16 @@ $(VENV)/.run: $(VENV)/.venv pyproject.toml constraints.txt
 	touch $@
 
 $(VENV)/.test: $(VENV)/.venv pyproject.toml constraints.txt
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[fast,test]"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[fast,test,docs]"
 	touch $@
 
+$(VENV)/.docs: $(VENV)/.venv pyproject.toml constraints.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[fast,docs]"
+	touch $@
+
+# what it costs, alone and beside other libraries, in an environment of its own; BENCH=--all, --quick, ...
+bench: $(VENV)/.venv
+	$(BIN)/python benchmarks $(BENCH)
+
 clean:
-	rm -rf $(VENV) .venv-plain
+	rm -rf $(VENV) .venv-plain benchmarks/.venv docs/_build

@@ -32,8 +32,11 @@ if TYPE_CHECKING:
         measure,
     )
     from gyrify.outputs import write_outputs
+    from gyrify.report.animate import animate
+    from gyrify.report.plot import plot
     from gyrify.simulation import Progress, resume, simulate
     from gyrify.store import History
+    from gyrify.study import Study, read_results, run_study
     from gyrify.summary import measure_state, summarise
     from gyrify.threshold import Threshold, critical_growth
 
@@ -54,7 +57,9 @@ _HOMES = {
     "MeshError": "errors",
     "Progress": "simulation",
     "SolveError": "errors",
+    "Study": "study",
     "Threshold": "threshold",
+    "animate": "report.animate",
     "converge": "convergence",
     "cortical_thickness": "metrics",
     "critical_growth": "threshold",
@@ -64,7 +69,10 @@ _HOMES = {
     "length_increase": "metrics",
     "measure": "metrics",
     "measure_state": "summary",
+    "read_results": "study",
+    "plot": "report.plot",
     "resume": "simulation",
+    "run_study": "study",
     "simulate": "simulation",
     "summarise": "summary",
     "write_outputs": "outputs",
@@ -84,8 +92,10 @@ __all__ = [
     "MeshError",
     "Progress",
     "SolveError",
+    "Study",
     "Threshold",
     "__version__",
+    "animate",
     "converge",
     "cortical_thickness",
     "critical_growth",
@@ -95,7 +105,10 @@ __all__ = [
     "length_increase",
     "measure",
     "measure_state",
+    "plot",
+    "read_results",
     "resume",
+    "run_study",
     "simulate",
     "summarise",
     "write_outputs",

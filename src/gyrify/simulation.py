@@ -153,6 +153,7 @@ def resume(
     Returns
     -------
     History
+        Complete, or ``stopped`` by a limit.
 
     Raises
     ------

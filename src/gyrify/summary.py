@@ -28,6 +28,7 @@ def measure_state(history: History, index: int = -1) -> Measures:
     Returns
     -------
     Measures
+        Every metric, by the configuration's own closing radius, prominence and samples.
     """
     chosen = history.config.metrics
     x = history.points(index)
@@ -90,6 +91,7 @@ def summarise(history: History) -> dict[str, Any]:
     Returns
     -------
     dict
+        Plain values under the names of ``summary.json``.
     """
     measures = measure_state(history)
     min_J, min_J_elastic = volume_extremes(history)

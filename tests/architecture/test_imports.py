@@ -19,7 +19,7 @@ LAYERS = [
     {"errors", "versions"},
     {"config", "physics", "mesh", "theory", "limits"},
     {"energy", "metrics"},
-    {"solve", "meshing"},
+    {"solve", "meshing", "phenotype"},
     {"tissue"},
     {"model"},
 ]
@@ -32,6 +32,7 @@ MAY_IMPORT = {
     "energy": {"physics", "errors"},
     "solve": {"energy", "physics", "mesh", "errors"},
     "metrics": {"mesh", "errors"},
+    "phenotype": {"metrics", "config", "errors"},
 }
 # Imports inside functions: (importer, imported), and why. Anything else is written at the top of its file.
 LAZY = {
@@ -39,6 +40,7 @@ LAZY = {
     ("solve", "solve"): "PARDISO may be missing",
     ("store", "notebook"): "pictures are for notebooks only",
     ("store", "store"): "h5py is loaded when it is needed",
+    ("study", "outputs"): "pictures are drawn only where a study keeps whole run folders",
 }
 # The command line answers at once, so that it imports what a command needs when it runs.
 MAY_BE_LAZY = {"cli", "notebook", "outputs"}

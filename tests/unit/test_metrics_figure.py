@@ -10,7 +10,7 @@ import pytest
 
 from gyrify.mesh import GREY, WHITE
 from gyrify.report import folded_figure, save_figure
-from gyrify.report.figures import _boundary_loops
+from gyrify.report.figures import boundary_loops
 from gyrify.report.page import _round_length
 
 N = 96
@@ -44,7 +44,7 @@ def slice_arrays() -> dict[str, np.ndarray]:
 
 def test_the_boundary_of_a_tissue_has_its_tissue_on_the_left() -> None:
     ring = slice_arrays()
-    loops = _boundary_loops(ring["cells"][ring["region"] == GREY])
+    loops = boundary_loops(ring["cells"][ring["region"] == GREY])
     areas = []
     for loop in loops:
         assert len(loop) == N

@@ -16,11 +16,17 @@ from cyclopts.exceptions import CycloptsError
 from gyrify import __version__
 from gyrify.cli import config, presets
 from gyrify.cli import run as run_commands
+from gyrify.cli.animate import animate
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, USAGE
 from gyrify.cli.converge import converge
 from gyrify.cli.early import ignore_interrupts
+from gyrify.cli.paper import paper
+from gyrify.cli.plot import plot
+from gyrify.cli.report import report
 from gyrify.cli.stored import export, verify
 from gyrify.cli.streams import complain, print_json
+from gyrify.cli.study import study
+from gyrify.cli.table import table
 from gyrify.cli.threshold import threshold
 from gyrify.errors import ConfigError, GyrifyError, HistoryError, MeshError
 
@@ -37,7 +43,13 @@ app.command(run_commands.resume)
 app.command(verify)
 app.command(threshold)
 app.command(converge)
+app.command(study)
+app.command(table)
+app.command(paper)
 app.command(export)
+app.command(report)
+app.command(plot)
+app.command(animate)
 app.command(presets.presets)
 app.command(config.app)
 

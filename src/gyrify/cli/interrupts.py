@@ -13,7 +13,7 @@ import os
 import signal
 import socket
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from shlex import quote
 from types import FrameType, TracebackType
@@ -131,3 +131,19 @@ class Interrupts:
 def _write(descriptor: int, text: str) -> None:
     with contextlib.suppress(OSError):
         os.write(descriptor, text.encode("utf-8", "backslashreplace"))
+
+
+@contextlib.contextmanager
+def ends_are_interrupts() -> Iterator[None]:
+    """Let SIGTERM and a closed terminal do what Ctrl-C does, inside a ``with`` block of the main thread."""
+    numbers = [getattr(signal, name) for name in _NAMES[1:] if hasattr(signal, name)]
+    is_main = threading.current_thread() is threading.main_thread()
+    # A signal that is ignored (nohup) stays ignored.
+    before = {n: signal.getsignal(n) for n in numbers if is_main and signal.getsignal(n) != signal.SIG_IGN}
+    for number in before:
+        signal.signal(number, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

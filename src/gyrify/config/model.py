@@ -57,7 +57,18 @@ class Config(Section):
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Config:
-        """Build a configuration from nested tables, as TOML or JSON hold them."""
+        """Build a configuration from nested tables, as TOML or JSON hold them.
+
+        Parameters
+        ----------
+        data : mapping
+            Tables by section; numbers may be fractions in quotes.
+
+        Returns
+        -------
+        Config
+            Checked and complete.
+        """
         return cls(**{str(key): value for key, value in data.items()})
 
     @classmethod
@@ -80,12 +91,34 @@ class Config(Section):
 
     @classmethod
     def load(cls, path: str | Path) -> Config:
-        """Read a configuration from a TOML file."""
+        """Read a configuration from a TOML file.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Config
+            Checked and complete.
+        """
         return cls.from_dict(read_tables(path))
 
     @classmethod
     def preset(cls, name: str) -> Config:
-        """Return the configuration of a preset."""
+        """Return the configuration of a preset.
+
+        Parameters
+        ----------
+        name : str
+            One of those that ``gyrify presets`` lists.
+
+        Returns
+        -------
+        Config
+            Checked and complete.
+        """
         return cls.from_dict(preset_data(name))
 
     def with_overrides(self, overrides: Mapping[str, object]) -> Config:
@@ -106,7 +139,18 @@ class Config(Section):
         return type(self).from_dict(merge(given, nested(overrides)))
 
     def replace(self, **overrides: object) -> Config:
-        """Return a copy with some values replaced: ``config.replace(**{"growth.ratio": 2.0})``."""
+        """Return a copy with some values replaced: ``config.replace(**{"growth.ratio": 2.0})``.
+
+        Parameters
+        ----------
+        **overrides : object
+            Values by dotted key.
+
+        Returns
+        -------
+        Config
+            Checked and complete.
+        """
         return self.with_overrides(overrides)
 
     def to_dict(self) -> dict[str, Any]:

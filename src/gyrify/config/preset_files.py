@@ -31,6 +31,8 @@ class PresetAbout:
         What the preset does not claim.
     sources : dict
         Where each value comes from, by dotted key.
+    gi_definition : str
+        Which gyrification index the publication's values are compared with: closing, hull or exposed.
     """
 
     name: str
@@ -38,6 +40,7 @@ class PresetAbout:
     reference: str = ""
     not_claimed: tuple[str, ...] = ()
     sources: dict[str, str] = field(default_factory=dict)
+    gi_definition: str = "closing"
 
 
 def preset_names() -> tuple[str, ...]:
@@ -66,6 +69,7 @@ def preset_about(name: str) -> PresetAbout:
         about.get("reference", ""),
         tuple(about.get("not_claimed", ())),
         about.get("sources", {}),
+        about.get("gi_definition", "closing"),
     )
 
 

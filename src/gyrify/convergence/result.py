@@ -147,7 +147,13 @@ class Convergence:
         )
 
     def family(self, subject: Subject) -> Family:
-        """The family of a subject."""
+        """The family of a subject.
+
+        Parameters
+        ----------
+        subject : {"mesh", "increments", "contact"}
+            What was refined.
+        """
         return next(family for family in self.families if family.subject == subject)
 
     def as_dict(self) -> dict[str, Any]:
@@ -162,7 +168,13 @@ class Convergence:
         }
 
     def write(self, folder: Path) -> None:
-        """Write ``convergence.json`` and ``convergence.csv`` (one row per level), by atomic rename."""
+        """Write ``convergence.json`` and ``convergence.csv`` (one row per level), by atomic rename.
+
+        Parameters
+        ----------
+        folder : Path
+            An existing folder.
+        """
         partial = folder / "convergence.partial"
         partial.write_text(json.dumps(self.as_dict(), indent=2, allow_nan=False) + "\n", encoding="utf-8")
         os.replace(partial, folder / "convergence.json")

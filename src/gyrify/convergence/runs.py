@@ -2,16 +2,9 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import os
-import signal
-import threading
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
-from multiprocessing.connection import wait
-from multiprocessing.synchronize import Event
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -19,15 +12,13 @@ from gyrify.config import Config
 from gyrify.convergence.measured import measured
 from gyrify.convergence.result import Level
 from gyrify.errors import GyrifyError, HistoryError, SolveError
+from gyrify.pool import Watcher, each, go_on
 from gyrify.simulation import new_run, stored_run
 from gyrify.store.folder import JOURNAL
 from gyrify.store.history import History
 from gyrify.summary import summarise, write_summary
 
 HASH_DIGITS: Final = 12
-_ONE_THREAD: Final = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
-Watcher = Callable[[], None]
-_stop: Event | None = None
 
 
 def run_folder(config: Config, folder: Path) -> Path:
@@ -35,17 +26,17 @@ def run_folder(config: Config, folder: Path) -> Path:
     return folder / config.config_hash[:HASH_DIGITS]
 
 
-def complete(config: Config, folder: Path, watch: Watcher = lambda: None) -> Level:
+def complete(config: Config, watch: Watcher = go_on, *, folder: Path) -> Level:
     """Bring a run to its end, unless it is there already, and measure it; a failure is a result too.
 
     Parameters
     ----------
     config : Config
         The run.
-    folder : Path
-        Where the folders of the runs are.
     watch : callable
         Called at each Newton iteration; may raise to end the run there.
+    folder : Path
+        Where the folders of the runs are.
 
     Returns
     -------
@@ -76,7 +67,7 @@ def complete_all(
     Parameters
     ----------
     configs : sequence of Config
-        The runs, each once.
+        The runs, each once; the last ones, which are the finest, are begun first.
     folder : Path
         Where the folders of the runs are.
     workers : int
@@ -94,91 +85,20 @@ def complete_all(
     KeyboardInterrupt
         At Ctrl-C, once every process has ended at a safe place.
     GyrifyError
-        If a process dies.
+        If processes cannot begin.
     """
     levels: dict[str, Level] = {}
-    for level in _in_turn(configs, folder) if workers == 1 else _in_pool(configs, folder, workers):
-        levels[level.config.config_hash] = level
-        tell(level)
+    found = each(partial(complete, folder=folder), configs[::-1], workers, partial(_lost, folder=folder))
+    with closing(found):
+        for level in found:
+            levels[level.config.config_hash] = level
+            tell(level)
     return levels
 
 
-def _in_turn(configs: Sequence[Config], folder: Path) -> Iterator[Level]:
-    return (complete(config, folder) for config in configs)
-
-
-def _in_pool(configs: Sequence[Config], folder: Path, workers: int) -> Iterator[Level]:
-    """Runs as they end; the last ones given, which are the finest, are begun first."""
-    context = multiprocessing.get_context("spawn")
-    stop = context.Event()
-    with _one_thread(), ProcessPoolExecutor(workers, context, _begin_worker, (stop,)) as pool:
-        futures: list[Future[Level]] = []
-        try:
-            with _deaf_children():
-                futures += [pool.submit(_complete_in_worker, config, folder) for config in reversed(configs)]
-            yield from (future.result() for future in as_completed(futures))
-        except BrokenProcessPool as error:
-            raise GyrifyError(
-                "A process of the study ended without a word, for want of memory perhaps.",
-                "Run it again with fewer workers; in a script, call it below if __name__ == '__main__'.",
-            ) from error
-        finally:
-            stop.set()  # only an interrupt or an error finds runs that still go on
-            for future in futures:
-                future.cancel()
-
-
-@contextmanager
-def _deaf_children() -> Iterator[None]:
-    """Hold Ctrl-C back while processes begin: they inherit that, and lay it down once they ignore it."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _begin_worker(stop: Event) -> None:
-    """Leave Ctrl-C to the parent, and end with it whatever becomes of it."""
-    global _stop
-    _stop = stop
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    if hasattr(signal, "pthread_sigmask"):
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        sentinel = parent.sentinel
-        threading.Thread(target=lambda: (wait([sentinel]), os._exit(1)), daemon=True).start()
-
-
-def _complete_in_worker(config: Config, folder: Path) -> Level:
-    try:
-        return complete(config, folder, _look)
-    except KeyboardInterrupt:
-        return Level(config, run_folder(config, folder), "interrupted", "The study was interrupted.", {}, 0.0)
-
-
-def _look() -> None:
-    if _stop is not None and _stop.is_set():
-        raise KeyboardInterrupt
-
-
-@contextmanager
-def _one_thread() -> Iterator[None]:
-    """Let processes that begin inside a ``with`` block compute with one thread each."""
-    before = {name: os.environ.get(name) for name in _ONE_THREAD}
-    os.environ.update(dict.fromkeys(_ONE_THREAD, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
+def _lost(config: Config, *, folder: Path) -> Level:
+    reason = "Its process ended without a word, for want of memory perhaps. Use a smaller mesh."
+    return Level(config, run_folder(config, folder), "failed", reason, {}, 0.0)
 
 
 def _is_complete(config: Config, target: Path) -> bool:

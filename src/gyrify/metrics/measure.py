@@ -16,8 +16,10 @@ from gyrify.metrics.contour import (
 )
 from gyrify.metrics.folds import depth_below, folds_about, require_detectable, shape_of_hull
 from gyrify.metrics.gap import simple_gap
+from gyrify.metrics.gyri import gyrus_shapes
 from gyrify.metrics.gyrification import closing_length, exposed_length
 from gyrify.metrics.measures import Measures
+from gyrify.metrics.sharpness import fold_sharpness
 from gyrify.metrics.strip import measure_strip
 from gyrify.metrics.thickness import thickness_at_folds
 
@@ -77,6 +79,7 @@ def _measure_ring(
     folds = folds_about(shape_of_hull(hull), vertices, gyrus_prominence, samples)
     depth = depth_below(folds.fundus_points, offset, closing_radius) if folds.n_gyri else np.zeros(1)
     crown, fundus = thickness_at_folds(folds, inner)
+    gyri = gyrus_shapes(folds)
     length = float(edge_lengths(vertices).sum())
     exposed = exposed_length(tissue, closing_radius)
     return Measures(
@@ -89,6 +92,9 @@ def _measure_ring(
         sulcal_depth_mean=float(depth.mean()),
         thickness_crown=crown,
         thickness_fundus=fundus,
+        gyrus_width=gyri.mean_width,
+        gyrus_flatness=gyri.mean_flatness,
+        fold_sharpness=fold_sharpness(folds),
         contour_length=length,
         min_gap=0.0 if crossing else simple_gap(vertices),
         self_intersecting=crossing,

@@ -23,6 +23,12 @@ class Measures:
         Depth of the fundi below the closing's outline [mm]; 0 without folds.
     thickness_crown, thickness_fundus : float
         Mean cortical thickness at crowns and at fundi [mm]; both the mean along the contour without folds.
+    gyrus_width : float
+        Mean width of the gyri at half their height [mm]; 0 without folds.
+    gyrus_flatness : float
+        Mean flatness of the gyri [-], see `gyrify.metrics.gyrus_shapes`; 0 without folds.
+    fold_sharpness : float
+        Turning at fundi over that at crowns [-], see `gyrify.metrics.fold_sharpness`; 1 without folds.
     contour_length : float
         Length of the contour [mm].
     min_gap : float
@@ -40,6 +46,9 @@ class Measures:
     sulcal_depth_mean: float
     thickness_crown: float
     thickness_fundus: float
+    gyrus_width: float
+    gyrus_flatness: float
+    fold_sharpness: float
     contour_length: float
     min_gap: float
     self_intersecting: bool
@@ -56,6 +65,9 @@ class Measures:
             "n_gyri": self.n_gyri,
             "sulcal_depth_mm": {"max": self.sulcal_depth_max, "mean": self.sulcal_depth_mean},
             "thickness_mm": {"crown": self.thickness_crown, "fundus": self.thickness_fundus},
+            "gyrus_width_mm": self.gyrus_width,
+            "gyrus_flatness": self.gyrus_flatness,
+            "fold_sharpness": self.fold_sharpness,
             "contour_length_mm": self.contour_length,
             "min_gap_mm": self.min_gap,
             "self_intersecting": self.self_intersecting,

@@ -23,8 +23,10 @@ from gyrify.metrics.contour import (
 )
 from gyrify.metrics.folds import Folds, depth_below, periodic_extrema
 from gyrify.metrics.gap import DETOUR
+from gyrify.metrics.gyri import gyrus_shapes
 from gyrify.metrics.gyrification import closing_length, exposed_length
 from gyrify.metrics.measures import Measures
+from gyrify.metrics.sharpness import fold_sharpness
 from gyrify.metrics.thickness import thickness_at_folds
 
 # Relative to the length of the contour, as in `gyrify.metrics.gap`.
@@ -52,6 +54,7 @@ def measure_strip(
     folds = _folds(line, period, gyrus_prominence, samples)
     depth = depth_below(folds.fundus_points, offset, closing_radius) if folds.n_gyri else np.zeros(1)
     crown, fundus = thickness_at_folds(folds, _repeated(interface, period, range(-1, 3)), closed=False)
+    gyri = gyrus_shapes(folds, closed=False)
     return Measures(
         gi_hull=length / period,
         gi_closing=length / closing,
@@ -62,6 +65,9 @@ def measure_strip(
         sulcal_depth_mean=float(depth.mean()),
         thickness_crown=crown,
         thickness_fundus=fundus,
+        gyrus_width=gyri.mean_width,
+        gyrus_flatness=gyri.mean_flatness,
+        fold_sharpness=fold_sharpness(folds, closed=False),
         contour_length=length,
         min_gap=0.0 if crossing else _gap(line, period),
         self_intersecting=crossing,

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
@@ -25,6 +27,8 @@ from gyrify.report.page import (
 # Largest displacement of the drawn mode, over the width of the slice.
 AMPLITUDE: Final = 0.03
 WIDTH_MM: Final = 90.0
+_THIN: Final[dict[str, Any]] = {"color": COLOURS["line"], "linewidth": 0.4}
+_THICK: Final = {**_THIN, "linewidth": 0.9}
 
 
 def mode_figure(
@@ -58,24 +62,60 @@ def mode_figure(
     matplotlib.figure.Figure
         Pass it to `gyrify.report.figures.save_figure`.
     """
-    x, v = np.asarray(points, dtype=np.float64), np.asarray(mode, dtype=np.float64)
-    outer, inner, held = (np.asarray(line, dtype=np.int64) for line in (contour, interface, clamped))
-    width = float(np.ptp(x[outer, 0]))
-    displaced = x + AMPLITUDE * width / float(np.linalg.norm(v[outer], axis=1).max()) * v
-    low, high = displaced[outer].min(axis=0), displaced[outer].max(axis=0)
-    low = np.minimum(low, x[held].min(axis=0))
+    lines = ModeLines.of(points, mode, contour, interface, clamped, period)
+    low, high = lines.frame
     text = header(title, subtitle, WIDTH_MM)
     figure, axes = page(low, high, WIDTH_MM, header_mm=2.8 + LINE_MM * len(text))
-    thin: dict[str, Any] = {"color": COLOURS["line"], "linewidth": 0.4}
-    thick = {**thin, "linewidth": 0.9}
-    for vertices, style in ((displaced[inner], thin), (x[held], thin), (x[outer], OUTLINE)):
-        axes.add_line(line(_ended(vertices, period), **style))
-    axes.add_line(line(_ended(displaced[outer], period), **thick))
+    lines.draw(axes)
     write_header(figure, text)
     scale_bar(figure, low, high)
-    before = Line2D([], [], label="state at onset", **OUTLINE)
-    legend(figure, (before, Line2D([], [], label="with its mode", **thick)))
+    legend(figure, mode_handles())
     return figure
+
+
+@dataclass(frozen=True, eq=False)
+class ModeLines:
+    """Lines of a state and of the same state displaced along a mode, (n, 2) each [mm]."""
+
+    before: FloatArray
+    contour: FloatArray
+    interface: FloatArray
+    clamped: FloatArray
+
+    @staticmethod
+    def of(
+        points: ArrayLike,
+        mode: ArrayLike,
+        contour: ArrayLike,
+        interface: ArrayLike,
+        clamped: ArrayLike,
+        period: float | None = None,
+    ) -> ModeLines:
+        """Lines from the arrays of `mode_figure`."""
+        x, v = np.asarray(points, dtype=np.float64), np.asarray(mode, dtype=np.float64)
+        outer, inner, held = (np.asarray(ids, dtype=np.int64) for ids in (contour, interface, clamped))
+        width = float(np.ptp(x[outer, 0]))
+        displaced = x + AMPLITUDE * width / float(np.linalg.norm(v[outer], axis=1).max()) * v
+        ways = (x[outer], displaced[outer], displaced[inner], x[held])
+        return ModeLines(*(_ended(vertices, period) for vertices in ways))
+
+    @property
+    def frame(self) -> tuple[FloatArray, FloatArray]:
+        """Corners [mm] of what is to be seen."""
+        low, high = self.contour.min(axis=0), self.contour.max(axis=0)
+        return np.minimum(low, self.clamped.min(axis=0)), high
+
+    def draw(self, axes: Axes) -> None:
+        """Draw the state dashed, and displaced in full lines."""
+        for vertices, style in ((self.interface, _THIN), (self.clamped, _THIN), (self.before, OUTLINE)):
+            axes.add_line(line(vertices, **style))
+        axes.add_line(line(self.contour, **_THICK))
+
+
+def mode_handles() -> tuple[Line2D, Line2D]:
+    """What the legend names."""
+    before = Line2D([], [], label="state at onset", **OUTLINE)
+    return before, Line2D([], [], label="with its mode", **_THICK)
 
 
 def _ended(vertices: FloatArray, period: float | None) -> FloatArray:

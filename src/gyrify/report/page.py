@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.text import Text
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
@@ -75,19 +76,21 @@ def write_header(figure: Figure, lines: list[tuple[str, int, str]]) -> None:
         figure.text(MARGIN_MM / width_mm, top, line, va="top", ha="left", **style)
 
 
-def scale_bar(figure: Figure, low: FloatArray, high: FloatArray) -> None:
-    """Draw a bar of a round length, about a fifth of the slice, at the left of the footer."""
+def scale_bar(
+    figure: Figure, low: FloatArray, high: FloatArray, y_mm: float = 0.56 * FOOTER_MM
+) -> tuple[Line2D, Text]:
+    """Draw a bar of a round length, about a fifth of the first axes, at the left of the footer."""
     length = _round_length(0.2 * float(high[0] - low[0]))
     to_pixels = figure.axes[0].transData.transform
     width_mm, height_mm = figure.get_size_inches() / MM
     start = MARGIN_MM / width_mm
     end = start + float(np.ptp(to_pixels([(0.0, 0.0), (length, 0.0)])[:, 0])) / figure.bbox.width
-    y = 0.56 * FOOTER_MM / height_mm
-    figure.add_artist(
-        Line2D([start, end], [y, y], linewidth=2.0, solid_capstyle="butt", color=COLOURS["line"])
-    )
+    y = y_mm / height_mm
+    bar = Line2D([start, end], [y, y], linewidth=2.0, solid_capstyle="butt", color=COLOURS["line"])
+    figure.add_artist(bar)
     style: dict[str, Any] = {"fontsize": 8, "family": FONT, "color": COLOURS["line"]}
-    figure.text(0.5 * (start + end), y - 1.2 / height_mm, f"{length:g} mm", va="top", ha="center", **style)
+    middle, below = 0.5 * (start + end), y - 1.2 / height_mm
+    return bar, figure.text(middle, below, f"{length:g} mm", va="top", ha="center", **style)
 
 
 def _round_length(wanted: float) -> float:
@@ -96,13 +99,15 @@ def _round_length(wanted: float) -> float:
     return max(step * power for step in (1, 2, 5) if step * power <= wanted * (1 + 1e-9))
 
 
-def legend(figure: Figure, handles: Sequence[Artist]) -> None:
+def legend(
+    figure: Figure, handles: Sequence[Artist], columns: int = 2, middle_mm: float = 0.5 * FOOTER_MM
+) -> None:
     """Name what is drawn, at the lower right."""
     figure.legend(
         handles=list(handles),
         loc="center right",
-        bbox_to_anchor=(1.0, 0.5 * FOOTER_MM * MM / figure.get_figheight()),
-        ncols=2,
+        bbox_to_anchor=(1.0, middle_mm * MM / figure.get_figheight()),
+        ncols=columns,
         frameon=False,
         prop={"family": FONT, "size": 7},
         handlelength=1.8,

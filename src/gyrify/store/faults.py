@@ -17,7 +17,7 @@ _NOT_A_FOLDER: Final = {errno.EEXIST, errno.ENOTDIR}
 
 
 @contextmanager
-def storage_faults(folder: Path, lost: str = "") -> Iterator[None]:
+def storage_faults(folder: Path, lost: str = "", what: str = "run") -> Iterator[None]:
     """Turn what the system says of a folder into one sentence with advice.
 
     Parameters
@@ -26,6 +26,8 @@ def storage_faults(folder: Path, lost: str = "") -> Iterator[None]:
         Where is written.
     lost : str
         What could not be written; by default the folder itself.
+    what : str
+        Whether it is the folder of a run or of a study.
 
     Raises
     ------
@@ -35,25 +37,24 @@ def storage_faults(folder: Path, lost: str = "") -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise _explained(error, folder, lost) from error
+        raise _explained(error, folder, lost, what) from error
     except RuntimeError as error:
         if "No space left" not in str(error):
             raise
-        raise _explained(OSError(errno.ENOSPC, "No space left on device"), folder, lost) from error
+        raise _explained(OSError(errno.ENOSPC, "No space left on device"), folder, lost, what) from error
 
 
-def _explained(error: OSError, folder: Path, lost: str) -> HistoryError:
+def _explained(error: OSError, folder: Path, lost: str, kind: str) -> HistoryError:
     reason = error.strerror or str(error)
-    what = f"{lost or f'The run folder {folder}'} cannot be written: {reason}."
+    what = f"{lost or f'The {kind} folder {folder}'} cannot be written: {reason}."
     if error.errno in _FULL or "No space left" in reason:
-        return HistoryError(
-            what, f"Free space on the disk, then continue with `gyrify resume {quote(str(folder))}`."
-        )
+        again = f"continue with `gyrify resume {quote(str(folder))}`" if kind == "run" else "run it again"
+        return HistoryError(what, f"Free space on the disk, then {again}.")
     if error.errno in _BLOCKED:
         return HistoryError(what, "Choose a folder that you may write to, with --out.")
     if error.errno in _NOT_A_FOLDER:
         return HistoryError(
-            f"The run folder {folder} cannot be made: {_file_in_the_way(folder)} is a file, not a folder.",
+            f"The {kind} folder {folder} cannot be made: {_file_in_the_way(folder)} is a file, not a folder.",
             "Choose another with --out.",
         )
     return HistoryError(what, "Choose another with --out.")

@@ -43,6 +43,16 @@ class History:
     def load(folder: str | Path) -> History:
         """Read a run folder.
 
+        Parameters
+        ----------
+        folder : path
+            The run folder; a run may be writing into it.
+
+        Returns
+        -------
+        History
+            The states that are stored so far.
+
         Raises
         ------
         HistoryError
@@ -85,15 +95,33 @@ class History:
         return self.fractions * self.config.growth.duration
 
     def displacement(self, index: int = -1) -> FloatArray:
-        """(n_points, 2) displacement u [mm] of a state; negative indices count from the end."""
+        """(n_points, 2) displacement u [mm] of a state.
+
+        Parameters
+        ----------
+        index : int
+            State; negative numbers count from the end.
+        """
         return self.state_vector(index)[: self.mesh.n_points]
 
     def axial_stretch(self, index: int = -1) -> float:
-        """Total out-of-plane stretch F33 of a state: 1 in plane strain."""
+        """Total out-of-plane stretch F33 of a state: 1 in plane strain.
+
+        Parameters
+        ----------
+        index : int
+            State; negative numbers count from the end.
+        """
         return self.slice.axial_stretch(self.state_vector(index))
 
     def state_vector(self, index: int = -1) -> FloatArray:
-        """(n_rows, 2) all unknowns of a state [mm]: the displacement, and F33 where it is one."""
+        """(n_rows, 2) all unknowns of a state [mm]: the displacement, and F33 where it is one.
+
+        Parameters
+        ----------
+        index : int
+            State; negative numbers count from the end.
+        """
         number = index + len(self) if index < 0 else index
         if not 0 <= number < len(self):
             raise HistoryError(
@@ -102,15 +130,33 @@ class History:
         return self.journal.displacement(number)
 
     def points(self, index: int = -1) -> FloatArray:
-        """(n_points, 2) deformed coordinates x [mm] of a state."""
+        """(n_points, 2) deformed coordinates x [mm] of a state.
+
+        Parameters
+        ----------
+        index : int
+            State; negative numbers count from the end.
+        """
         return self.mesh.points + self.displacement(index)
 
     def contour(self, index: int = -1) -> FloatArray:
-        """(n_contour, 2) deformed outer contour [mm] of a state."""
+        """(n_contour, 2) deformed outer contour [mm] of a state.
+
+        Parameters
+        ----------
+        index : int
+            State; negative numbers count from the end.
+        """
         return self.points(index)[self.mesh.contour]
 
     def interface(self, index: int = -1) -> FloatArray:
-        """(n_interface, 2) deformed grey-white interface [mm] of a state."""
+        """(n_interface, 2) deformed grey-white interface [mm] of a state.
+
+        Parameters
+        ----------
+        index : int
+            State; negative numbers count from the end.
+        """
         return self.points(index)[self.mesh.interface]
 
     @property
@@ -195,7 +241,13 @@ class History:
         return to_dataframe(self)
 
     def to_pyvista(self, index: int = -1) -> UnstructuredGrid:
-        """A state as a PyVista grid with all its fields; see `gyrify.notebook`."""
+        """A state as a PyVista grid with all its fields; see `gyrify.notebook`.
+
+        Parameters
+        ----------
+        index : int
+            State; negative numbers count from the end.
+        """
         from gyrify.notebook import to_pyvista
 
         return to_pyvista(self, index)

@@ -20,8 +20,15 @@ OWNER: Final = "run.owner.json"
 
 
 @contextmanager
-def run_lock(folder: Path) -> Iterator[str]:
+def run_lock(folder: Path, what: str = "run") -> Iterator[str]:
     """Hold the folder for this process; the operating system lets go when the process dies.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of a run or of a study.
+    what : str
+        Which of them, for messages.
 
     Yields
     ------
@@ -40,12 +47,14 @@ def run_lock(folder: Path) -> Iterator[str]:
             lock.acquire(timeout=0)
         except Timeout as held:
             raise HistoryError(
-                f"The run folder {folder} is in use by {_describe(owner)}.",
+                f"The {what} folder {folder} is in use by {_describe(owner)}.",
                 "Wait for that process, stop it, or choose another folder with --out.",
             ) from held
     try:
         stale = (
-            f"{_describe(owner)} ended without closing this run; it is taken over." if owner.exists() else ""
+            f"{_describe(owner)} ended without closing this {what}; it is taken over."
+            if owner.exists()
+            else ""
         )
         with storage_faults(folder):
             owner.write_text(json.dumps({"pid": os.getpid(), "host": socket.gethostname()}), encoding="utf-8")

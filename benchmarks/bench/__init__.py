@@ -1,0 +1,1 @@
+"""What gyrify costs, alone and beside other libraries: ``python benchmarks``."""

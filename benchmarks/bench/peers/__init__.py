@@ -1,0 +1,1 @@
+"""The energy of gyrify's cells written for other finite element libraries."""

@@ -1,0 +1,1 @@
+"""Measured constants for a plan in three dimensions: tetrahedra, factorisation, multigrid, contact."""

@@ -1,0 +1,198 @@
+"""``gyrify paper``: the paper, reproduced by one command."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, STOPPED
+from gyrify.cli.interrupts import ends_are_interrupts
+from gyrify.cli.streams import complain, print_json, say
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from gyrify.config import Config
+    from gyrify.paper.bench import Bench
+    from gyrify.paper.reading import Reading
+    from gyrify.paper.reproduce import Reproduction
+
+PRESET = "wang2019"
+_MORE_SEEDS = "each of the best three again with five seeds"
+
+
+def paper(
+    *,
+    out: Path = Path("paper"),
+    workers: int | None = None,
+    readings: bool = False,
+    minutes: float = 45.0,
+    preset: str = PRESET,
+    set_: Annotated[tuple[str, ...], Parameter(name="--set", negative="", allow_leading_hyphen=True)] = (),
+    gi: str | None = None,
+    seed: int = 0,
+    json: bool = False,
+    quiet: bool = False,
+) -> int:
+    """Run the simulations of Wang, Yao and Hu (2019) and compare what they observed.
+
+    Runs that the folder holds are not made again: the same command continues after Ctrl-C, and rebuilds all
+    tables and figures.
+
+    Parameters
+    ----------
+    out : Path
+        Folder for runs, scoreboard and figures.
+    workers : int, optional
+        Processes, of one thread each; by default the number of cores.
+    readings : bool
+        Screen every reading of what the paper leaves open, rank them, and repeat the best with five seeds.
+    minutes : float
+        Time after which the screen begins nothing new.
+    preset : str
+        What to start from; its mechanics is the reading.
+    set_ : sequence of str, optional
+        Any other value, as section.field=value; may be repeated.
+    gi : str, optional
+        Definition of the gyrification index: closing, hull or exposed; by default the preset's.
+    seed : int
+        Seed of the node jitter.
+    json : bool
+        Print the result as one JSON document.
+    quiet : bool
+        Show no progress.
+    """
+    from gyrify.cli.overrides import resolve_config
+    from gyrify.cli.study_progress import progress_of_points
+    from gyrify.config import preset_about
+    from gyrify.paper.bench import Bench
+    from gyrify.paper.reading import Mechanics, Reading, require_gi
+
+    begun = time.perf_counter()
+    base = resolve_config(preset=preset, set_=set_)
+    reading = Reading(Mechanics.of(base), require_gi(gi or preset_about(preset).gi_definition))
+    processes = _cores() if workers is None else workers
+    _require(processes, minutes)
+    try:
+        with (
+            ends_are_interrupts(),
+            progress_of_points(quiet or readings) as observer,
+            Bench(out, processes, observer) as bench,
+        ):
+            if readings:
+                return _readings(bench, base, begun, minutes, seed, json, quiet)
+            return _one(bench, base, reading, begun, seed, json)
+    except KeyboardInterrupt:
+        said, advice = "Every finished run is stored.", "Run the same command again to continue."
+        complain(f"Interrupted. {said} {advice}")
+        if json:
+            print_json({"error": "Interrupted", "message": said, "advice": advice})
+        return INTERRUPTED
+
+
+def _require(workers: int, minutes: float) -> None:
+    from gyrify.errors import ConfigError
+    from gyrify.pool import MAX_WORKERS
+
+    if not 1 <= workers <= MAX_WORKERS:
+        raise ConfigError(f"workers = {workers} is out of range (1 to {MAX_WORKERS}).", "Try 2.")
+    if not 0 <= minutes < float("inf"):
+        raise ConfigError(f"minutes = {minutes:g} is out of range: it must be >= 0.", "Try 45.")
+
+
+def _one(bench: Bench, base: Config, reading: Reading, begun: float, seed: int, json: bool) -> int:
+    """One reading, one seed."""
+    from gyrify.paper.reproduce import reproduce
+    from gyrify.report.paper import write_report
+
+    found = reproduce(bench, base, reading, seed=seed)
+    bench.write()
+    write_report(found, bench.stored, bench.folder)
+    wall_s = time.perf_counter() - begun
+    if json:
+        print_json(found.scoreboard.as_dict(wall_s))
+    else:
+        _show(found)
+        say(f"{len(bench.records)} runs, {bench.computed} of them now, {wall_s:.0f} s.")
+        say(f"Files in {bench.folder}.")
+    return COMPLETED if any(row.is_complete for row in found.rows.values()) else FAILED
+
+
+def _readings(
+    bench: Bench, base: Config, begun: float, minutes: float, seed: int, json: bool, quiet: bool
+) -> int:
+    """Screen, rank, and repeat the best."""
+    from gyrify.paper.ensemble import repeat
+    from gyrify.paper.screen import BEST, ScreenProgress, screen
+    from gyrify.report.paper import write_report
+    from gyrify.report.paper_readings import write_readings
+
+    def tell(now: ScreenProgress) -> None:
+        if not quiet:
+            spent = (time.perf_counter() - begun) / 60
+            left = f"{now.live} of {now.total} readings can still be among the best {BEST}"
+            complain(f"{spent:.0f} min, {now.runs} runs; {left}; best: {now.best} hold, {now.reading}")
+
+    screening = screen(bench, base, seed=seed, until=begun + 60 * minutes, tell=tell)
+    write_readings(screening, (), bench.folder)
+    if not quiet:
+        complain(f"Now {_MORE_SEEDS}." if screening.is_complete else "Time is over: no seeds yet.")
+    best = screening.candidates[:BEST] if screening.is_complete else ()
+    ensembles = [repeat(bench, base, candidate.reading) for candidate in best]
+    if bench.records:
+        bench.write()
+    files = write_readings(screening, ensembles, bench.folder)
+    for number, ensemble in enumerate(ensembles, start=1):
+        write_report(ensemble.members[0], bench.stored, bench.folder / f"best-{number}", figures=number == 1)
+    document = _ranking(screening.candidates, ensembles, time.perf_counter() - begun)
+    if json:
+        print_json(document)
+    else:
+        for entry in document["ranking"][:10]:
+            say(f"{entry['passed']:2d} hold, {entry['open']} open: {entry['reading']}")
+        say(f"Ranking in {files[1]}.")
+    return COMPLETED if screening.is_complete else STOPPED
+
+
+def _ranking(candidates: Sequence[Any], ensembles: Sequence[Any], wall_s: float) -> dict[str, Any]:
+    """The JSON document of a screen: the best scoreboard, the ranking, and the spread over seeds."""
+    boards = [candidate.boards[candidate.gi] for candidate in candidates]
+    ranking = [
+        {"reading": board.reading, "passed": board.passed, "open": board.open, "marks": board.marks}
+        for board in boards
+    ]
+    best = ensembles[0].members[0].scoreboard if ensembles else boards[0]
+    seeds = [
+        {"reading": str(e.reading), "passed": [m.scoreboard.passed for m in e.members], "passes": e.passes}
+        for e in ensembles
+    ]
+    return {**best.as_dict(wall_s), "ranking": ranking, "seeds": seeds}
+
+
+def _cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _show(found: Reproduction) -> None:
+    """Print the scoreboard as a table, and the sentences on what does not pass."""
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    marks = {True: Text("pass", "bold green"), False: Text("FAIL", "bold red"), None: Text("open", "yellow")}
+    board = found.scoreboard
+    title = f"Reading: {board.reading}"
+    table = Table("", "The paper says", "paper", "ours", "", title=title, title_justify="left")
+    for row in board.rows:
+        table.add_row(row.id, Text(row.statement), Text(row.paper), Text(row.ours), marks[row.passed])
+    console = Console(width=None if os.isatty(1) else 140, highlight=False)
+    console.print(table)
+    for row in board.rows:
+        if row.note:
+            console.print(Text(f"{row.id}: {row.note}."))
+    console.print(Text(f"{board.passed} of {len(board.rows)} observations hold.", "bold"))

@@ -1,0 +1,108 @@
+"""``gyrify plot``: a picture of a run, or of several, for a journal."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Annotated, Final, Literal
+
+from cyclopts import Parameter
+
+from gyrify.cli.overrides import Text
+from gyrify.cli.stored import RunFolder
+from gyrify.cli.streams import print_json, say
+from gyrify.errors import ConfigError
+
+What = Literal["folded", "gi", "stress", "thickness", "energy", "mode", "dispersion"]
+_SUFFIXES: Final = (".png", ".svg", ".pdf")
+_FEWEST_DPI, _MOST_DPI = 50, 1200
+
+
+def plot(
+    run_folder: RunFolder,
+    /,
+    *,
+    what: What = "folded",
+    out: Path | None = None,
+    at: Text = None,
+    compare: Annotated[tuple[Path, ...], Parameter(consume_multiple=True)] = (),
+    stress: Literal["von_mises", "mean", "circumferential"] | None = None,
+    width: Text = None,
+    dpi: int = 300,
+    json: bool = False,
+) -> None:
+    """Draw a run at journal quality.
+
+    Parameters
+    ----------
+    what : str
+        folded: the slice. gi: indices against growth. stress, thickness: as colour. energy: where the work of
+        growth goes. mode: along which stability was lost. dispersion: exact growth at onset of each mode.
+    out : Path, optional
+        File to write, .png, .svg or .pdf; by default plot-WHAT.png in the run folder.
+    at : str, optional
+        Growth time; the nearest stored state is shown, and curves end there.
+    compare : Path, optional
+        Folders of further runs, shown beside it at one scale.
+    stress : str, optional
+        The one stress to show instead of three.
+    width : str, optional
+        Width of the page in mm: one column of most journals is 90, two are 180.
+    dpi : int
+        Pixels per inch of a .png, and of fields of colour in the others.
+    json : bool
+        Print what was written as one JSON document.
+    """
+    target = out if out is not None else run_folder / f"plot-{what}.png"
+    _check(target, dpi)
+    if what == "dispersion":  # matrices of 200 rows are slower with more threads; numpy is not loaded yet
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    from gyrify.report.figures import save_figure
+    from gyrify.report.plot import plot as draw
+    from gyrify.store.faults import storage_faults
+
+    figure = draw(
+        run_folder,
+        what,
+        compare=compare,
+        at=number("--at", at),
+        stress=stress,
+        width_mm=number("--width", width),
+    )
+    with storage_faults(target.parent, f"The picture {target}"):
+        save_figure(figure, target, dpi=dpi)
+    if json:
+        print_json({"what": what, "files": [str(target)]})
+    else:
+        say(str(target))
+
+
+def number(option: str, text: str | None) -> float | None:
+    """Number that an option was given, which may be a fraction; None where it was not given.
+
+    Raises
+    ------
+    ConfigError
+        If it is not a number.
+    """
+    from gyrify.config.numbers import parse_number
+
+    if text is None:
+        return None
+    try:
+        return parse_number(text)
+    except ValueError as fault:
+        raise ConfigError(f"{option} {text[:60]!r} is not a number: {fault}.", "Give a number.") from fault
+
+
+def _check(target: Path, dpi: int) -> None:
+    if target.suffix.lower() not in _SUFFIXES:
+        raise ConfigError(
+            f"--out {str(target)[-60:]!r} has no suffix that names a format.",
+            f"End it with one of: {', '.join(_SUFFIXES)}.",
+        )
+    if not _FEWEST_DPI <= dpi <= _MOST_DPI:
+        raise ConfigError(
+            f"--dpi {dpi} is out of range: it must be {_FEWEST_DPI} to {_MOST_DPI}.",
+            "Journals ask for 300 to 600.",
+        )

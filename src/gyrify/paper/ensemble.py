@@ -1,0 +1,126 @@
+"""A reading with several seeds: the folded state is not unique, and this is how far it spreads."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from statistics import fmean, stdev
+
+from gyrify.config import Config
+from gyrify.paper.bench import Bench
+from gyrify.paper.cases import BOTH, Case, ratio_text
+from gyrify.paper.reading import Reading
+from gyrify.paper.reproduce import Reproduction, reproduce
+from gyrify.paper.row import Row
+from gyrify.paper.threshold import visible_bracket
+
+SEEDS = (0, 1, 2, 3, 4)
+
+
+@dataclass(frozen=True)
+class Spread:
+    """A quantity over the seeds.
+
+    Attributes
+    ----------
+    name : str
+        What it is.
+    mean, deviation : float
+        Mean and sample standard deviation; the latter 0 for a single value.
+    n : int
+        Seeds that have it.
+    """
+
+    name: str
+    mean: float
+    deviation: float
+    n: int
+
+    def __str__(self) -> str:
+        return f"{self.mean:.3f} ± {self.deviation:.3f}" + (
+            "" if self.n == len(SEEDS) else f" ({self.n} seeds)"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Ensemble:
+    """One reading, several seeds.
+
+    Attributes
+    ----------
+    reading : Reading
+        The reading.
+    members : tuple of Reproduction
+        One per seed.
+    """
+
+    reading: Reading
+    members: tuple[Reproduction, ...]
+
+    @property
+    def passes(self) -> dict[str, int]:
+        """Seeds with which each observation holds, by its id."""
+        boards = [member.scoreboard for member in self.members]
+        return {
+            row.id: sum(board.rows[i].passed is True for board in boards)
+            for i, row in enumerate(boards[0].rows)
+        }
+
+    @property
+    def score(self) -> Spread:
+        """Number of observations that hold at once."""
+        return spread("observations that hold", [float(m.scoreboard.passed) for m in self.members])
+
+    def spreads(self) -> list[Spread]:
+        """Index and gyri of every case of the paper's figures, and both thresholds."""
+        found = []
+        common = set.intersection(*(set(member.rows) for member in self.members))
+        for case in sorted(common):
+            rows = [member.rows[case] for member in self.members if member.rows[case].is_complete]
+            found += _of_case(case, rows) if rows else []
+        for stiffness in BOTH:
+            brackets = [visible_bracket(member.rows, stiffness) for member in self.members]
+            values = [bracket.value for bracket in brackets if bracket is not None]
+            name = f"growth ratio of visible folds, E = {ratio_text(stiffness)}"
+            found += [spread(name, values)] if values else []
+        return found
+
+
+def repeat(
+    bench: Bench, base: Config, reading: Reading, seeds: Sequence[int] = SEEDS, *, stability: bool = True
+) -> Ensemble:
+    """Reproduce the paper with several seeds.
+
+    Parameters
+    ----------
+    bench : Bench
+        Who computes.
+    base : Config
+        Everything that no reading changes.
+    reading : Reading
+        The reading.
+    seeds : sequence of int
+        Seeds of the node jitter.
+    stability : bool
+        Whether the loss of stability is located too, which no seed changes.
+
+    Returns
+    -------
+    Ensemble
+    """
+    members = [reproduce(bench, base, reading, seed=seed, stability=stability) for seed in seeds]
+    return Ensemble(reading, tuple(members))
+
+
+def spread(name: str, values: Sequence[float]) -> Spread:
+    """Mean and sample standard deviation of finite values."""
+    finite = [value for value in values if math.isfinite(value)]
+    if not finite:
+        return Spread(name, math.nan, math.nan, 0)
+    return Spread(name, fmean(finite), stdev(finite) if len(finite) > 1 else 0.0, len(finite))
+
+
+def _of_case(case: Case, rows: Sequence[Row]) -> list[Spread]:
+    gi = spread(f"GI, {case}", [row.gi for row in rows])
+    return [gi, spread(f"gyri, {case}", [float(row.n_gyri) for row in rows])]

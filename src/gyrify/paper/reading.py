@@ -1,0 +1,164 @@
+"""Readings of the paper: what it leaves open, as data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+from typing import Final
+
+from gyrify.config import Config
+from gyrify.errors import ConfigError
+from gyrify.paper.cases import Case
+from gyrify.paper.row import GI_DEFINITIONS, GiDefinition
+from gyrify.study import Point
+
+OUT_OF_PLANE: Final = ("blocked", "none", "generalised")
+STRETCH: Final = ("linear", "exponential")
+ENERGY_PER: Final = ("grown", "reference")
+ELEMENTS: Final = ("linear", "quadratic", "mean_dilatation")
+DISSIPATION: Final = (
+    *(("drag", number) for number in (0.013, 0.13, 0.4, 1.3, 2.6, 5.0)),
+    *(("kelvin_voigt", number) for number in (0.01, 0.1, 1.0)),
+    ("none", 0.0),
+)
+# Stability is located by a threshold of its own, and costs a quarter of a run.
+_PLAIN: Final = {"stability.detect": False, "stability.follow_branch": False}
+
+
+@dataclass(frozen=True, order=True)
+class Mechanics:
+    """What of a reading changes the simulations.
+
+    Attributes
+    ----------
+    out_of_plane, stretch, energy_per : str
+        As in the section ``growth`` of the configuration.
+    dissipation : str
+        Kind of dissipation.
+    number : float
+        Dissipation number [-]; 0 where there is none.
+    element : str
+        Finite element.
+    """
+
+    out_of_plane: str = "blocked"
+    stretch: str = "linear"
+    energy_per: str = "grown"
+    dissipation: str = "drag"
+    number: float = 1.3
+    element: str = "linear"
+
+    @classmethod
+    def of(cls, config: Config) -> Mechanics:
+        """That of a configuration."""
+        growth, dissipation = config.growth, config.dissipation
+        number = 0.0 if dissipation.kind == "none" else dissipation.number
+        return cls(
+            growth.out_of_plane,
+            growth.stretch,
+            growth.energy_per,
+            dissipation.kind,
+            number,
+            config.mesh.element,
+        )
+
+    @property
+    def overrides(self) -> dict[str, object]:
+        """Its values by dotted key."""
+        return {
+            "growth.out_of_plane": self.out_of_plane,
+            "growth.stretch": self.stretch,
+            "growth.energy_per": self.energy_per,
+            "dissipation.kind": self.dissipation,
+            "dissipation.number": self.number,
+            "mesh.element": self.element,
+        }
+
+    def __str__(self) -> str:
+        drag = "no dissipation" if self.dissipation == "none" else f"{self.dissipation} {self.number:g}"
+        words = (self.out_of_plane, self.stretch, self.energy_per, drag, f"{self.element} triangles")
+        return ", ".join(words).replace("_", " ").replace("kelvin voigt", "Kelvin-Voigt")
+
+
+@dataclass(frozen=True, order=True)
+class Reading:
+    """One reading of the paper.
+
+    Attributes
+    ----------
+    mechanics : Mechanics
+        What it simulates.
+    gi : {"closing", "hull", "exposed"}
+        What it calls gyrification index, in every row.
+    """
+
+    mechanics: Mechanics = Mechanics()
+    gi: GiDefinition = "closing"
+
+    def __str__(self) -> str:
+        return f"{self.mechanics}; GI by {self.gi}"
+
+
+def point_of(base: Config, mechanics: Mechanics, case: Case, seed: int) -> Point:
+    """One run of a reading.
+
+    Parameters
+    ----------
+    base : Config
+        Everything that no reading changes.
+    mechanics : Mechanics
+        The reading.
+    case : Case
+        Which simulation of the paper.
+    seed : int
+        Seed of the node jitter.
+
+    Returns
+    -------
+    Point
+        Its parameters are what differs from the base.
+
+    Raises
+    ------
+    ConfigError
+        If the values do not go together.
+    """
+    own = Mechanics.of(base).overrides
+    other = {key: value for key, value in mechanics.overrides.items() if value != own[key]}
+    parameters = {**other, **_as_many_nodes(base, mechanics), **case.overrides, "seed": seed}
+    return Point(parameters, base.with_overrides({**_PLAIN, **parameters}))
+
+
+def _as_many_nodes(base: Config, mechanics: Mechanics) -> dict[str, object]:
+    """Half as many columns and layers where quadratic triangles take the place of others.
+
+    They have a node in the middle of each edge, so that the paper's 216 nodes around stay 216.
+    """
+    mesh = base.mesh
+    if mechanics.element != "quadratic" or mesh.element == "quadratic":
+        return {}
+    return {
+        "mesh.n_around": mesh.n_around // 2,
+        "mesh.n_layers": (mesh.n_layers + 1) // 2,
+        "mesh.n_cortex_layers": max(mesh.n_cortex_layers // 2, 2),
+    }
+
+
+def grid(element: str = "linear") -> list[Mechanics]:
+    """All combinations of the axes with one element."""
+    axes = product(OUT_OF_PLANE, STRETCH, ENERGY_PER, DISSIPATION)
+    return [Mechanics(plane, stretch, per, kind, c, element) for plane, stretch, per, (kind, c) in axes]
+
+
+def require_gi(word: str) -> GiDefinition:
+    """A definition of the index by its name.
+
+    Raises
+    ------
+    ConfigError
+        If there is none of that name.
+    """
+    for known in GI_DEFINITIONS:
+        if word == known:
+            return known
+    raise ConfigError(f"gi = {word[:60]!r} is not known.", f"Choose one of {', '.join(GI_DEFINITIONS)}.")

@@ -1,0 +1,121 @@
+// What lies over the scene: colour bar, scale bar, and the value under the pointer.
+
+function createColourBar(viewer, colours) {
+  const title = element("div", { class: "bar-title" });
+  const strip = element("div", { class: "bar-strip" });
+  const labels = element("div", { class: "bar-labels" });
+  const swatches = element("div", { class: "swatches" });
+  const host = element("div", { class: "colour-bar", "aria-hidden": "true" }, title,
+    element("div", { class: "bar-body" }, strip, labels), swatches);
+  let shown = "";
+  const update = () => {
+    const field = viewer.field();
+    const isTissue = field === REGION || viewer.state.mode !== null;
+    const limits = viewer.limits();
+    const key = [field.name, isTissue, ...limits].join();
+    if (key === shown) return;
+    shown = key;
+    title.textContent = isTissue ? "tissue" : field.unit ? `${field.label} [${field.unit}]` : field.label;
+    show(strip.parentNode, !isTissue);
+    show(swatches, isTissue);
+    if (isTissue) drawSwatches(swatches, colours.region);
+    else drawBar(strip, labels, colours[field.colours], limits);
+  };
+  viewer.drawn.listen(update);
+  return host;
+}
+
+function drawSwatches(host, [white, grey]) {
+  const swatch = (colour, text) => {
+    const patch = element("span", { class: "swatch" });
+    patch.style.background = colour;
+    return element("div", {}, patch, text);
+  };
+  host.replaceChildren(swatch(grey, "grey matter"), swatch(white, "white matter"));
+}
+
+function drawBar(strip, labels, samples, limits) {
+  strip.style.background = cssGradient(samples, "to top");
+  const [low, high] = limits;
+  labels.replaceChildren(...ticks(low, high, 5).map((value) => {
+    const label = element("span", { class: "bar-label" }, brief(value));
+    label.style.bottom = `${(100 * (value - low)) / (high - low)}%`;
+    return label;
+  }));
+}
+
+// A bar of a round length, about a quarter of the scene at most.
+function createScaleBar(viewer) {
+  const line = element("div", { class: "scale-line" });
+  const text = element("span", {});
+  const host = element("div", { class: "scale-bar", "aria-hidden": "true" }, line, text);
+  viewer.drawn.listen(() => {
+    const { scale, width } = viewer.camera;
+    const wanted = Math.min(0.25 * width, 140) / scale;
+    const power = 10 ** Math.floor(Math.log10(wanted));
+    const length = [5, 2, 1].map((k) => k * power).find((l) => l <= wanted * 1.0001);
+    line.style.width = `${length * scale}px`;
+    text.textContent = withUnit(brief(length), "mm");
+  });
+  return host;
+}
+
+// The value of the shown field at a place of the canvas, or null: what it is, how exact, and of what.
+function probe(viewer, px, py) {
+  const { model, state, camera } = viewer;
+  const field = viewer.field();
+  const [x, y] = camera.toPlane(px, py);
+  if (field.place === "contour" && state.mode === null) {
+    const points = linePoints(viewer.positions(), model.lines.contour, model.period);
+    const place = nearestPoint(points, x, y, 14 / camera.scale);
+    if (place < 0) return null;
+    const k = place % model.lines.contour.length;
+    const value = model.values(state.frame, field.name)[k];
+    return { field, value, frame: state.frame, x: points[2 * place], y: points[2 * place + 1], node: model.lines.contour[k] };
+  }
+  const triangle = triangleAt(viewer, x, y);
+  if (triangle < 0) return null;
+  const cell = Math.floor(triangle / model.perCell);
+  const isTissue = field === REGION || state.mode !== null;
+  const value = isTissue ? null : model.values(state.frame, field.name)[cell];
+  return { field: isTissue ? REGION : field, value, frame: state.frame, x, y, cell, region: model.region[cell] };
+}
+
+// The sorted triangles are kept for as long as the shape is the same.
+function triangleAt(viewer, x, y) {
+  const key = `${viewer.state.frame} ${viewer.state.mode}`;
+  if (viewer.pickerKey !== key) {
+    viewer.pickerKey = key;
+    viewer.picker = createPicker(viewer.corners().slice());
+  }
+  return viewer.picker(x, y);
+}
+
+function createTooltip() {
+  const host = element("div", { class: "tooltip", role: "status", "aria-live": "off", hidden: true });
+  const tissue = (found) => (found.region === 1 ? "grey matter" : "white matter");
+  return {
+    host,
+    hide: () => show(host, false),
+    show(found, px, py, width) {
+      const { field } = found;
+      const { text, error } = field === REGION ? { text: tissue(found) } : exactly(found);
+      const place = `x ${brief(found.x)}, y ${brief(found.y)} mm`;
+      const what = found.node === undefined ? `cell ${found.cell} · ${tissue(found)}` : `contour node ${found.node}`;
+      host.replaceChildren(
+        element("strong", { class: "tooltip-value" }, field === REGION ? text : withUnit(text, field.unit)),
+        element("span", {}, field === REGION ? `cell ${found.cell}` : what),
+        element("span", { class: "faint" }, place),
+        field === REGION ? null : element("span", { class: "faint" }, `shown to ± ${brief(error, 2)}`));
+      show(host, true);
+      const isRight = px > width - 220;
+      host.style.left = `${px + (isRight ? -14 : 14)}px`;
+      host.style.top = `${py + 14}px`;
+      host.classList.toggle("to-left", isRight);
+    },
+  };
+}
+
+function exactly({ value, field, frame }) {
+  return Number.isNaN(value) ? { text: "undefined", error: 0 } : measured(value, field.step[frame] / 2);
+}

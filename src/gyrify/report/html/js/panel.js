@@ -1,0 +1,57 @@
+// A run to look at: scene, growth time and plots, kept in step.
+
+async function createPanel(run, payloadId, colours, { field = "von_mises", isActive } = {}) {
+  const model = await loadModel(run, payloadId);
+  const viewer = createViewer(model, colours);
+  const player = createPlayer(model.times, run.duration);
+  const tooltip = createTooltip();
+  const pointer = connectPointer(viewer, tooltip);
+  const first = model.fields.has(field) ? field : "region";
+  const choice = createFieldChoice(run.frames.fields, first, (name) => {
+    if (mode) mode.leave();
+    viewer.set({ field: name });
+    describeScene();
+  });
+  const mode = model.hasMode ? createModeSwitch(viewer, run.onset, (isOn) => {
+    player.toggle(false);
+    plots.mark(isOn ? run.onset.growth_time : model.times[player.frame]);
+  }) : null;
+  const plots = createPlots(run.plots, {
+    duration: run.duration, onset: run.onset && run.onset.growth_time, onSeek: (time) => player.seekTime(time),
+  });
+  const describeScene = () => {
+    const what = viewer.field().label;
+    viewer.canvas.setAttribute("aria-label", `${run.name}, coloured by ${what}, growth time ${brief(model.times[player.frame])}. Plus and minus zoom, 0 shows all.`);
+  };
+  player.changed.listen((frame) => {
+    if (mode) mode.leave();
+    viewer.set({ frame });
+    plots.mark(model.times[frame]);
+    describeScene();
+  });
+  connectKeys(player, isActive);
+  viewer.set({ field: first });
+  player.seek(model.nFrames - 1);
+  const host = layOut({ viewer, player, tooltip, pointer, choice, mode, plots, colours });
+  const release = () => {
+    player.toggle(false);
+    if (mode) mode.leave();
+    viewer.release();
+  };
+  return { host, viewer, player, choice, model, release };
+}
+
+function layOut({ viewer, player, tooltip, pointer, choice, mode, plots, colours }) {
+  const options = element("div", { class: "options" },
+    createSwitch("colours of this state", "Stretch the colours over the range of this state instead of the whole run",
+      false, (isOn) => viewer.set({ scope: isOn ? "state" : "run" })).host,
+    createSwitch("mesh", "Draw the edges of the cells", false, (mesh) => viewer.set({ mesh })).host,
+    mode && mode.host);
+  const missing = element("p", { class: "notice" }, "This browser offers no WebGL 2, which the scene needs.");
+  const scene = element("div", { class: "scene" }, viewer.isAble ? viewer.canvas : missing,
+    createColourBar(viewer, colours), createScaleBar(viewer), createZoomButtons(pointer), mode && mode.bar, tooltip.host);
+  return element("div", { class: "panel" },
+    element("div", { class: "stage" },
+      element("div", { class: "toolbar" }, choice.host, options), scene, player.host),
+    plots.host);
+}

@@ -1,0 +1,73 @@
+// The page of a study.
+
+const report = JSON.parse(document.getElementById("document").textContent);
+// For scripts and tests: what the page shows.
+window.gyrify = { report };
+
+function showStudy({ study, colours }) {
+  document.title = `${study.name} · gyrify`;
+  const selection = createSelection(study.runs);
+  const open = (index) => openRun(study, index, colours);
+  const redraw = () => [window.gyrify.panel && window.gyrify.panel.viewer, ...(window.gyrify.pair || [])]
+    .forEach((viewer) => viewer && viewer.redraw());
+  const page = document.getElementById("page");
+  page.replaceChildren(createStudyHeader(study, createThemeSwitch(redraw)), ...createStudyNotices(study));
+  if (study.axes.length >= 2) {
+    page.append(block("Phase diagram", createPhase(study, colours, open)));
+  }
+  page.append(
+    block("Runs", createFilter(study, selection), createCompareBar(study, selection, colours), createTable(study, selection, open)),
+    block("Shapes, at one scale", createGallery(study, selection, open)));
+}
+
+function block(title, ...content) {
+  return element("section", { class: "block" }, element("h2", {}, title), content);
+}
+
+function createStudyHeader(study, themeSwitch) {
+  const varied = study.columns.filter((column) => column.is_given).map((column) => column.label);
+  const ended = study.runs.filter((run) => run.status === "completed").length;
+  return element("header", { class: "page-header" },
+    element("div", {}, element("p", { class: "brand" }, "gyrify · study"), element("h1", {}, study.name),
+      element("p", { class: "subtitle" }, `${ended} of ${study.runs.length} runs completed` +
+        (varied.length ? ` · ${varied.join(", ")}` : ""))),
+    themeSwitch);
+}
+
+function createStudyNotices(study) {
+  const early = study.runs.filter((run) => run.status !== "completed");
+  if (early.length === 0) return [];
+  const shown = early.slice(0, 5).map((run) => element("li", {}, `${run.title}: ${run.status}. ${run.reason}`));
+  return [element("div", { class: "notice early", role: "alert" },
+    element("strong", {}, `${early.length} of ${study.runs.length} runs did not complete.`),
+    element("ul", {}, shown, early.length > 5 ? element("li", {}, `and ${early.length - 5} more`) : null))];
+}
+
+function createCompareBar(study, selection, colours) {
+  const button = element("button", {
+    type: "button", class: "plain", click: () => openComparison(study, selection.compared, colours),
+  }, "Show side by side");
+  const text = element("span", { class: "faint" });
+  const update = () => {
+    const chosen = selection.compared.map((k) => study.runs[k]);
+    const isReady = chosen.length === 2 && chosen.every((run) => run.payload);
+    button.disabled = !isReady;
+    text.textContent = chosen.length ? chosen.map((run) => run.title).join("  |  ") : "Tick two runs to compare them.";
+  };
+  selection.changed.listen(update);
+  update();
+  return element("div", { class: "filter" }, button, text);
+}
+
+// Thumbnails follow the table: the same runs in the same order.
+function createGallery(study, selection, onOpen) {
+  const largest = Math.max(...study.runs.map((run) => (run.outline ? run.outline.width_mm : 0)));
+  const thumbnails = study.runs.map((run, index) => createThumbnail(run, index, largest, onOpen));
+  const host = element("div", { class: "gallery" });
+  const update = () => host.replaceChildren(...selection.indices().map((k) => thumbnails[k]));
+  selection.changed.listen(update);
+  update();
+  return host;
+}
+
+showStudy(report);

@@ -1,0 +1,80 @@
+"""What is plotted against growth time: gyrification, depth and energy of every state."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from itertools import accumulate
+from typing import Any, Final
+
+from gyrify.reevaluation import reevaluated
+from gyrify.store.history import History
+from gyrify.summary import metrics_rows
+
+# 1 Pa mm^2 is 1e-6 mJ per mm out of the plane.
+_MJ_PER_MM: Final = 1e-6
+
+
+def plots(history: History) -> list[dict[str, Any]]:
+    """Plots of a run, each with its lines over all states.
+
+    Parameters
+    ----------
+    history : History
+        The run.
+
+    Returns
+    -------
+    list of dict
+        ``title``, ``unit``, ``times`` and ``lines`` (``label``, ``values``; None where there is no number).
+    """
+    rows = metrics_rows(history)
+    return [*folding_plots(rows), _plot("Energy", "mJ/mm", rows, energy_lines(history))]
+
+
+def folding_plots(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The plots that follow from the metrics alone."""
+    radius = rows[0]["gi_closing_radius_mm"]
+    index = (
+        (f"closing {radius:g} mm", "gi_closing"),
+        ("hull", "gi_hull"),
+        ("exposed", "gi_exposed"),
+    )
+    depth = (("deepest", "sulcal_depth_mm_max"), ("mean", "sulcal_depth_mm_mean"))
+    return [
+        _plot("Gyrification index", "", rows, _columns(rows, index)),
+        _plot("Sulcal depth", "mm", rows, _columns(rows, depth)),
+    ]
+
+
+def energy_lines(history: History) -> list[dict[str, Any]]:
+    """Energies of every state, summed up over the increments as they are evaluated again [mJ/mm].
+
+    Work of growth is what goes in; the rest is stored elastically, in contact, or dissipated.
+    """
+    increments = list(reevaluated(history))
+    parts = (
+        ("elastic", [i.elastic for i in increments]),
+        ("dissipated", [i.dissipated for i in increments]),
+        ("contact", [i.contact for i in increments]),
+        ("work of growth", [i.work for i in increments]),
+    )
+    return [
+        {"label": label, "values": [_number(_MJ_PER_MM * v) for v in accumulate(changes, initial=0.0)]}
+        for label, changes in parts
+    ]
+
+
+def _columns(rows: Sequence[dict[str, Any]], names: Iterable[tuple[str, str]]) -> list[dict[str, Any]]:
+    return [{"label": label, "values": [_number(row[key]) for row in rows]} for label, key in names]
+
+
+def _plot(
+    title: str, unit: str, rows: Sequence[dict[str, Any]], lines: list[dict[str, Any]]
+) -> dict[str, Any]:
+    return {"title": title, "unit": unit, "times": [row["growth_time"] for row in rows], "lines": lines}
+
+
+def _number(value: float) -> float | None:
+    """Enough digits for a plot and its legend; None where it is not finite."""
+    return float(f"{value:.7g}") if math.isfinite(value) else None

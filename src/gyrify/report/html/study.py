@@ -1,0 +1,117 @@
+"""The page of a study: every run of it, to sort, to compare and to look at."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from gyrify.config.table import plain
+from gyrify.report.html.colours import colour_maps
+from gyrify.report.html.page import STUDY_SCRIPTS, page
+from gyrify.report.html.study_runs import described_run
+from gyrify.report.study_data import Row, axis_label, numeric, varied
+from gyrify.study import read_results
+
+# Bytes of deflated arrays that a page of a study carries; the scene of a run gets its share, but no less than
+# one state needs. Runs that find no room are shown by their outlines.
+_BUDGET: Final = 12_000_000
+_LEAST: Final = 60_000
+_MOST: Final = 24_000_000
+# Column, label, decimals (None: as needed).
+_QUANTITIES: Final = (
+    ("gi_closing", "GI, closing", 3),
+    ("gi_hull", "GI, hull", 3),
+    ("n_gyri", "gyri", None),
+    ("sulcal_depth_mm_max", "deepest sulcus [mm]", 2),
+    ("thickness_mm_crown", "cortex at crowns [mm]", 2),
+    ("thickness_mm_fundus", "cortex at fundi [mm]", 2),
+    ("onset_growth_time", "stability lost at time", 1),
+    ("wall_s", "time spent [s]", 1),
+)
+
+
+def study_page(folder: Path, name: str) -> str:
+    """Everything about a study in one HTML page.
+
+    Parameters
+    ----------
+    folder : Path
+        Study folder, with ``results.parquet``.
+    name : str
+        What to call it; any text.
+
+    Returns
+    -------
+    str
+        HTML that needs no network and no other file; equal results and names give equal pages.
+
+    Raises
+    ------
+    HistoryError
+        If there are no results.
+    """
+    rows = read_results(folder).to_pylist()
+    keys = varied(rows)
+    payloads: dict[str, str] = {}
+    budget, room = max(_LEAST, _BUDGET // max(len(rows), 1)), _MOST
+    runs = []
+    for number, row in enumerate(rows):
+        run, payload = described_run(folder, row, budget if room > 0 else 0)
+        if payload:
+            room -= len(payload) * 3 // 4
+            run["payload"] = f"payload-{number}"
+            payloads[run["payload"]] = payload
+        runs.append(run | {"name": row["key"], "title": _title(row, keys), "values": _values(row, keys)})
+    document = {
+        "kind": "study",
+        "colours": colour_maps(),
+        "study": {"name": name, "columns": _columns(rows, keys), "axes": numeric(rows, keys), "runs": runs},
+    }
+    return page(document, payloads, STUDY_SCRIPTS)
+
+
+def _columns(rows: Sequence[Row], keys: Sequence[str]) -> list[dict[str, Any]]:
+    """What the table shows: what varies, then what came of it."""
+    numbers = set(numeric(rows, keys))
+    columns = [
+        {
+            "key": key,
+            "label": axis_label(key),
+            "decimals": None,
+            "is_number": key in numbers,
+            "is_given": True,
+        }
+        for key in keys
+    ]
+    if rows and rows[0].get("phenotype") is not None:
+        columns.append(
+            {
+                "key": "phenotype",
+                "label": "phenotype",
+                "decimals": None,
+                "is_number": False,
+                "is_given": False,
+            }
+        )
+    return columns + [
+        {"key": key, "label": label, "decimals": decimals, "is_number": True, "is_given": False}
+        for key, label, decimals in _QUANTITIES
+        if any(row.get(key) is not None for row in rows)
+    ]
+
+
+def _values(row: Row, keys: Sequence[str]) -> dict[str, Any]:
+    """Values of the table's columns in one row."""
+    found = {key: row[key] if isinstance(row[key], int | float) else plain(row[key]) for key in keys}
+    return found | {key: row.get(key) for key in ("phenotype", *(key for key, *_ in _QUANTITIES))}
+
+
+def _title(row: Row, keys: Sequence[str]) -> str:
+    """What tells a run from the others, in one line."""
+    told = []
+    for key in keys:
+        name, bracket, unit = axis_label(key).partition(" [")
+        value = f"{row[key]:.4g}" if isinstance(row[key], float) else plain(row[key])
+        told.append(f"{name} {value}{' ' + unit.rstrip(']') if bracket else ''}")
+    return " · ".join(told) or str(row["key"])

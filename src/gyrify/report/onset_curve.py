@@ -1,0 +1,130 @@
+"""Where theory lets the growing circle lose stability, as curves in the plane of two parameters."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+from scipy.optimize import brentq
+
+from gyrify.config import Config
+from gyrify.errors import ConfigError, SolveError
+from gyrify.report.plot.dispersion import annulus_of
+from gyrify.theory.annulus import BaseState
+from gyrify.theory.onset import Parameter, stability_margin, state_at
+
+FloatArray = NDArray[np.float64]
+Span = tuple[float, float]
+
+# Parameters along which theory finds every change of stability, the most telling first.
+SCANNED: Final[dict[str, Parameter]] = {
+    "growth.ratio": "growth_ratio",
+    "growth.duration": "growth_time",
+    "geometry.cortical_thickness": "cortical_thickness",
+    "material.stiffness_ratio": "stiffness_ratio",
+}
+# Parameters that the exact annulus knows.
+COVERED: Final = (
+    *SCANNED,
+    "geometry.area",
+    "geometry.hole_fraction",
+    "material.young_modulus",
+    "material.poisson_ratio",
+    "material.poisson_ratio_white",
+    "growth.rate",
+)
+_SECTIONS: Final = 9
+_SCAN: Final = 7
+_ACCURACY: Final = 1e-3
+_SMOOTH: Final = 160
+
+
+@dataclass(frozen=True, eq=False)
+class OnsetCurve:
+    """Curves of neutral stability.
+
+    Attributes
+    ----------
+    lines : tuple of (n, 2) float arrays
+        Values of the first and of the second parameter along each curve.
+    note : str
+        What a reader should know: what the curve is of, or why there is none.
+    """
+
+    lines: tuple[FloatArray, ...]
+    note: str
+
+
+def onset_curve(config: Config, keys: tuple[str, str], spans: tuple[Span, Span]) -> OnsetCurve:
+    """Where the exact annulus loses (or gains) stability within two ranges.
+
+    Parameters
+    ----------
+    config : Config
+        All other parameters.
+    keys : (str, str)
+        Dotted keys of the two parameters.
+    spans : ((float, float), (float, float))
+        Their ranges.
+
+    Returns
+    -------
+    OnsetCurve
+    """
+    missing = [key for key in keys if key not in COVERED]
+    scanned = next((key for key in SCANNED if key in keys), None)
+    if config.geometry.shape == "strip" or missing or scanned is None:
+        what = "strips" if config.geometry.shape == "strip" else " and ".join(missing or keys)
+        return OnsetCurve((), f"No onset curve: the exact annulus does not cover {what}.")
+    along = keys.index(scanned)
+    sections = _spaced(spans[1 - along], _SECTIONS)
+    found = [_crossings(config.replace(**{keys[1 - along]: at}), scanned, spans[along]) for at in sections]
+    depth = max(map(len, found))
+    rows = np.array([[*values, *[np.nan] * (depth - len(values))] for values in found]).reshape(-1, depth)
+    lines = [_smooth(sections, rows[:, k]) for k in range(depth)]
+    lines = [line[:, ::-1] if along == 0 else line for line in lines if line.size]
+    circle = "a circle" if config.geometry.shape == "circle" else "a circle of the same area"
+    if not lines:
+        return OnsetCurve((), f"The exact annulus ({circle}) does not change stability in this range.")
+    return OnsetCurve(tuple(lines), f"Onset: exact, for {circle}, without dissipation.")
+
+
+def _crossings(config: Config, key: str, span: Span) -> list[float]:
+    """Values of the scanned parameter at which stability changes; none where theory finds no base state."""
+    annulus, parameter = annulus_of(config.replace(**{key: span[1]})), SCANNED[key]
+    guess: BaseState | None = None
+
+    def margin(value: float) -> float:
+        nonlocal guess
+        guess = state_at(annulus, parameter, value, annulus.duration, guess)
+        return stability_margin(guess).value
+
+    values = _spaced(span, _SCAN).tolist()
+    try:
+        margins = [margin(value) for value in values]
+        return [
+            float(brentq(margin, values[i], values[i + 1], rtol=_ACCURACY))
+            for i in range(len(values) - 1)
+            if (margins[i] < 0.0) != (margins[i + 1] < 0.0)
+        ]
+    except (ConfigError, SolveError):
+        return []
+
+
+def _spaced(span: Span, n: int) -> FloatArray:
+    """Values in a range, in equal ratios where it spans much."""
+    low, high = span
+    inner = (np.geomspace if low > 0.0 and high > 4.0 * low else np.linspace)(low, high, n)[1:-1]
+    return np.array([low, *inner, high])
+
+
+def _smooth(sections: FloatArray, values: FloatArray) -> FloatArray:
+    """A curve through the sections that have a value, monotone between them."""
+    known = np.isfinite(values)
+    if known.sum() < 2:
+        return np.zeros((0, 2))
+    at = np.linspace(sections[known][0], sections[known][-1], _SMOOTH)
+    return np.column_stack([at, PchipInterpolator(sections[known], values[known])(at)])

@@ -1,0 +1,111 @@
+"""Pictures of runs at journal quality: one state or all of growth, one run or several side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Final, Literal, get_args
+
+from matplotlib.figure import Figure
+
+from gyrify.errors import ConfigError
+from gyrify.report.plot.dispersion import dispersion_plot
+from gyrify.report.plot.energy import energy_plot
+from gyrify.report.plot.folded import folded_plot
+from gyrify.report.plot.indices import gi_plot
+from gyrify.report.plot.mode import mode_plot
+from gyrify.report.plot.shown import Run, Shown, show
+from gyrify.report.plot.stress import stress_plot
+from gyrify.report.plot.style import HUES
+from gyrify.report.plot.thickness import thickness_plot
+
+__all__ = ["KINDS", "Kind", "plot"]
+
+Kind = Literal["folded", "gi", "stress", "thickness", "energy", "mode", "dispersion"]
+KINDS: Final[tuple[Kind, ...]] = get_args(Kind)
+_MAKERS: Final[dict[str, Callable[[Sequence[Shown], float | None], Figure]]] = {
+    "folded": folded_plot,
+    "gi": gi_plot,
+    "stress": stress_plot,
+    "thickness": thickness_plot,
+    "energy": energy_plot,
+    "mode": mode_plot,
+    "dispersion": dispersion_plot,
+}
+# Pictures of what has no growth time, or all of them.
+_TIMELESS: Final = {"mode": "the onset", "dispersion": "every growth time"}
+_NARROWEST, _WIDEST = 60.0, 300.0
+
+
+def plot(
+    run: Run,
+    what: Kind = "folded",
+    *,
+    compare: Sequence[Run] = (),
+    at: float | None = None,
+    stress: str | None = None,
+    width_mm: float | None = None,
+) -> Figure:
+    """Draw a run.
+
+    Parameters
+    ----------
+    run : History or path
+        The run, or its folder; it need not have completed, and the picture says so.
+    what : str
+        ``folded``: tissues, contour and exposed outline. ``gi``: gyrification index, sulcal depth and gyri
+        against growth time. ``stress``: von Mises, mean and circumferential stress [kPa]. ``thickness``: that
+        of the cortex, as colour and along the contour [mm]. ``energy``: work of growth, stored, dissipated,
+        in contact and lost in jumps [mJ/mm]. ``mode``: the mode along which stability was lost.
+        ``dispersion``: exact growth at onset against mode number, with the onset of the run.
+    compare : sequence of History or path, optional
+        Further runs to show beside it, at the same scale and in the same colours; at most seven.
+    at : float, optional
+        Growth time [model units]; the nearest stored state is shown, and curves end there. The last state by
+        default.
+    stress : {"von_mises", "mean", "circumferential"}, optional
+        The one stress to show instead of three.
+    width_mm : float, optional
+        Width of the page [mm], 60 to 300; 90 or 180, the columns of most journals, by default.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        To be shown in a notebook or passed to `gyrify.report.save_figure`.
+
+    Raises
+    ------
+    ConfigError
+        If there is no such picture, growth time or stress; if a run has no onset, or is a strip.
+    HistoryError
+        If there is no run in a folder.
+
+    Examples
+    --------
+    >>> figure = gyrify.plot("runs/reference-slice", "stress", at=300.0)  # doctest: +SKIP
+    """
+    _check(what, len(compare), at, stress, width_mm)
+    states = show([run, *compare], at)
+    return stress_plot(states, width_mm, stress) if what == "stress" else _MAKERS[what](states, width_mm)
+
+
+def _check(what: str, others: int, at: float | None, stress: str | None, width_mm: float | None) -> None:
+    """Refuse what no picture can show, before a run is read."""
+    if what not in KINDS:
+        raise ConfigError(f"what = {what[:60]!r} is not a picture.", f"Choose one of: {', '.join(KINDS)}.")
+    if others >= len(HUES):
+        raise ConfigError(
+            f"compare has {others} runs: a page holds {len(HUES) - 1} more.", "Compare fewer runs."
+        )
+    if at is not None and what in _TIMELESS:
+        raise ConfigError(
+            f"at = {at:g} has no meaning for {what}, which shows {_TIMELESS[what]}.", "Leave it out."
+        )
+    if stress is not None and what != "stress":
+        raise ConfigError(
+            f"stress = {stress[:60]!r} has no meaning for {what}.", "It goes with what = stress."
+        )
+    if width_mm is not None and not _NARROWEST <= width_mm <= _WIDEST:
+        raise ConfigError(
+            f"width_mm = {width_mm:g} is out of range: it must be {_NARROWEST:g} to {_WIDEST:g} mm.",
+            "One column of most journals is 90 mm wide, two are 180 mm.",
+        )

@@ -1,0 +1,98 @@
+"""Where the work of growth goes: stored, dissipated, in contact, lost in jumps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import islice
+from typing import Any, Final
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from gyrify.reevaluation import reevaluated
+from gyrify.report.plot.curves import curves, mark_onset, title_of
+from gyrify.report.plot.shown import Shown
+from gyrify.report.plot.style import DASHES, HUES, SINGLE, TIME_LABEL, add_legend, literal
+from gyrify.report.sheet import FloatArray
+
+# 1 Pa mm² per mm of depth is 1e-6 mJ.
+_MILLIJOULES: Final = 1e-6
+_HEIGHTS: Final = (40.0, 32.0)
+_SHARES: Final = ("stored [mJ/mm]", "dissipated [mJ/mm]", "contact [µJ/mm]", "lost [µJ/mm]")
+_LABELS: Final = ("energy [mJ/mm]", "energy [µJ/mm]")
+# Contact and jumps take so little that they are given in microjoules.
+_MICRO: Final = 1e3
+
+
+@dataclass(frozen=True, eq=False)
+class Budget:
+    """Energy per depth [mJ/mm] from the start of growth to each state, (n_states,) each.
+
+    ``work`` of growth = ``stored`` in elasticity + ``contact`` + ``dissipated`` + ``lost`` in jumps; see
+    `gyrify.reevaluation`.
+    """
+
+    time: FloatArray
+    work: FloatArray
+    stored: FloatArray
+    dissipated: FloatArray
+    contact: FloatArray
+    lost: FloatArray
+
+    @staticmethod
+    def of(state: Shown) -> Budget:
+        """Evaluate the increments of a run up to the shown state again."""
+        history, end = state.history, state.index
+        rows = [
+            (i.work, i.elastic, i.dissipated, i.contact, -i.defect) for i in islice(reevaluated(history), end)
+        ]
+        sums = np.zeros((5, end + 1))
+        if rows:
+            sums[:, 1:] = _MILLIJOULES * np.cumsum(np.array(rows).T, axis=1)
+        return Budget(history.growth_times[: end + 1], *sums)
+
+
+def energy_plot(states: Sequence[Shown], width_mm: float | None) -> Figure:
+    """Energy of one run, small shares below at their own scale; or a panel per share for several runs."""
+    width = width_mm or SINGLE
+    end = max(state.history.config.growth.duration for state in states)
+    if len(states) > 1:
+        figure, panels = curves(
+            title_of(states, "Energy against growth"), TIME_LABEL, _SHARES, width, 4 * (28.0,)
+        )
+        _several(panels, states)
+    else:
+        figure, panels = curves(title_of(states, ""), TIME_LABEL, _LABELS, width, _HEIGHTS)
+        _one(panels, states[0])
+    panels[0].set_xlim(0.0, end)
+    return figure
+
+
+def _one(panels: Sequence[Axes], state: Shown) -> None:
+    budget = Budget.of(state)
+    shares = (
+        (panels[0], budget.work, "work of growth", 4, 0),
+        (panels[0], budget.stored, "stored in the tissue", 0, 0),
+        (panels[0], budget.dissipated, "dissipated", 1, 1),
+        (panels[1], _MICRO * budget.lost, "lost in jumps", 2, 0),
+        (panels[1], _MICRO * budget.contact, "stored in contact", 3, 1),
+    )
+    for axes, values, label, hue, dash in shares:
+        axes.plot(budget.time, values, color=HUES[hue], linestyle=DASHES[dash], linewidth=1.2, label=label)
+    onset = state.history.onset
+    for number, axes in enumerate(panels):
+        add_legend(axes, loc="upper left")
+        if onset is not None:
+            mark_onset(axes, onset.growth_time, "" if number else "onset")
+
+
+def _several(panels: Sequence[Axes], states: Sequence[Shown]) -> None:
+    for state, hue, dash in zip(states, HUES, DASHES, strict=False):
+        budget = Budget.of(state)
+        style: dict[str, Any] = {"color": hue, "linestyle": dash, "linewidth": 1.2}
+        shares = (budget.stored, budget.dissipated, _MICRO * budget.contact, _MICRO * budget.lost)
+        for axes, values in zip(panels, shares, strict=True):
+            axes.plot(budget.time, values, label=literal(state.name), **style)
+    add_legend(panels[0], loc="upper left")

@@ -1,0 +1,98 @@
+"""The mode along which a run first lost stability."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from matplotlib.figure import Figure
+
+from gyrify.errors import ConfigError
+from gyrify.report.mode import ModeLines, mode_figure, mode_handles
+from gyrify.report.page import legend
+from gyrify.report.plot.shown import Shown
+from gyrify.report.plot.slices import BAR_MM, Label, board
+from gyrify.report.plot.style import DOUBLE, SINGLE
+from gyrify.report.sheet import FloatArray, IntArray
+from gyrify.solve.stability import Onset
+
+Arrays = tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray]
+
+
+def mode_plot(states: Sequence[Shown], width_mm: float | None) -> Figure:
+    """State at onset and the same displaced along its mode, for one run or for several at one scale.
+
+    Raises
+    ------
+    ConfigError
+        If a run has no onset.
+    """
+    onsets = [onset_of(state) for state in states]
+    width = width_mm or (SINGLE if len(states) == 1 else DOUBLE)
+    if len(states) == 1 and width == SINGLE:
+        return _one(states[0], onsets[0])
+    lines = [_lines(state, onset) for state, onset in zip(states, onsets, strict=True)]
+    labels = [
+        Label(
+            (
+                state.name,
+                f"t = {onset.growth_time:.5g}, n = {onset.mode_number}, λ = {onset.wavelength:.3g} mm",
+            ),
+            state.note,
+        )
+        for state, onset in zip(states, onsets, strict=True)
+    ]
+    columns = 2 if width == SINGLE or len(states) in (2, 4) else 3
+    page = board([each.frame for each in lines], labels, width, columns=columns)
+    for axes, each in zip(page.panels, lines, strict=True):
+        each.draw(axes)
+    legend(page.figure, mode_handles(), middle_mm=0.5 * BAR_MM)
+    return page.figure
+
+
+def onset_of(state: Shown) -> Onset:
+    """Onset of a run.
+
+    Raises
+    ------
+    ConfigError
+        If it has none, with the reason.
+    """
+    history = state.history
+    if history.onset is not None:
+        return history.onset
+    if not history.config.stability.detect:
+        raise ConfigError(
+            f"{state.name}: the loss of stability was not looked for (stability.detect = false).",
+            "Run again with --set stability.detect=true.",
+        )
+    folded = " Node jitter can unfold the bifurcation, so that a slice folds without one." * (
+        state.measures.n_gyri > 0
+    )
+    raise ConfigError(
+        f"{state.name}: no onset was found, so that there is no mode to show.{folded}",
+        "`gyrify threshold` finds the onset of the smooth slice; choose another picture with --what.",
+    )
+
+
+def _wave(onset: Onset) -> str:
+    return f"mode {onset.mode_number}, wavelength {onset.wavelength:.3g} mm"
+
+
+def _arrays(state: Shown, onset: Onset) -> Arrays:
+    mesh = state.history.mesh
+    x = mesh.points + onset.displacement[: mesh.n_points]
+    return x, onset.vector[: mesh.n_points], mesh.contour, mesh.interface, mesh.clamped
+
+
+def _lines(state: Shown, onset: Onset) -> ModeLines:
+    return ModeLines.of(*_arrays(state, onset), state.history.mesh.period)
+
+
+def _one(state: Shown, onset: Onset) -> Figure:
+    title = f"Loss of stability at growth time {onset.growth_time:.5g}"
+    return mode_figure(
+        *_arrays(state, onset),
+        title=f"{title} ({state.note})" if state.note else title,
+        subtitle=_wave(onset),
+        period=state.history.mesh.period,
+    )

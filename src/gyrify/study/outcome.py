@@ -1,0 +1,106 @@
+"""What a study tells while it goes on, and what it came to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from gyrify.study.archive import Record
+from gyrify.study.definition import Point
+from gyrify.study.results import read_results
+from gyrify.study.stored import RUNS, StoredPoint
+from gyrify.versions import solver_version
+
+if TYPE_CHECKING:
+    from pyarrow import Table
+
+
+@dataclass(frozen=True)
+class StudyProgress:
+    """What an observer sees: once at the beginning, and as each point ends.
+
+    Attributes
+    ----------
+    point : Point or None
+        The one that has ended; None at the beginning.
+    record : Record or None
+        What it came to.
+    done, failed, total : int
+        Points that are known, those among them that did not complete, and all.
+    elapsed_s : float
+        Time since this call began computing [s].
+    remaining_s : float or None
+        Estimated time to the end [s], at the mean pace so far; None while there is none.
+    """
+
+    point: Point | None
+    record: Record | None
+    done: int
+    failed: int
+    total: int
+    elapsed_s: float
+    remaining_s: float | None
+
+
+StudyObserver = Callable[[StudyProgress], None]
+
+
+@dataclass(frozen=True, eq=False)
+class StudyResult:
+    """A study that has ended.
+
+    Attributes
+    ----------
+    folder : Path
+        Study folder.
+    points : tuple of Point
+        The design.
+    records : dict
+        What each point came to, by key.
+    computed : int
+        Points computed by this call; the others were known.
+    wall_s : float
+        Time taken by this call [s].
+    """
+
+    folder: Path
+    points: tuple[Point, ...]
+    records: dict[str, Record]
+    computed: int
+    wall_s: float
+
+    @property
+    def failures(self) -> dict[str, str]:
+        """Reason by key, of points that did not complete."""
+        found = ((key, self.records[key]) for key in (point.key for point in self.points))
+        return {key: f"{r.reason} {r.advice}".strip() for key, r in found if r.status != "completed"}
+
+    @property
+    def status(self) -> str:
+        """``completed``, or what became of points that did not complete: ``failed`` before ``stopped``."""
+        found = {record.status for record in self.records.values()}
+        return next((status for status in ("failed", "stopped") if status in found), "completed")
+
+    @property
+    def table(self) -> Table:
+        """One row per point; see `gyrify.study.read_results`."""
+        return read_results(self.folder)
+
+    def point(self, key: str) -> StoredPoint:
+        """A point as it is stored; see `gyrify.study.final_state`."""
+        return StoredPoint(self.folder / RUNS / key, self.records[key])
+
+    def as_dict(self) -> dict[str, Any]:
+        """Fields as in ``gyrify study --json``."""
+        return {
+            "status": self.status,
+            "folder": str(self.folder),
+            "total": len(self.points),
+            "computed": self.computed,
+            "completed": len(self.points) - len(self.failures),
+            "failures": [{"key": key, "reason": reason} for key, reason in self.failures.items()],
+            "solver_version": solver_version(),
+            "wall_s": self.wall_s,
+        }

@@ -1,0 +1,220 @@
+"""``results.parquet``: one tidy row per run, with the same bytes for the same results."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from gyrify.config import Config
+from gyrify.errors import ConfigError, HistoryError
+from gyrify.phenotype import classify, grown_thickness
+from gyrify.study.archive import Record
+from gyrify.study.definition import Point, value_of
+
+if TYPE_CHECKING:
+    from pyarrow import DataType, Table
+
+RESULTS: Final = "results.parquet"
+TIMINGS: Final = "timings.csv"
+_IDENTITY: Final = ("key", "config_hash", "solver_version", "status", "reason", "advice")
+# Not quantities, given elsewhere in the row, or different from one machine to the next.
+_LEFT_OUT: Final = {*_IDENTITY, "versions", "seed", "result_hash", "solver_wall_s"}
+# What an incomplete run has too.
+_OF_ANY_END: Final = ("growth_time", "solver_")
+_INT, _TEXT, _BOOL, _FLOAT = "int64", "string", "bool", "float64"
+# Columns that are always there, with their types; what else a summary holds comes after them.
+QUANTITIES: Final = {
+    "growth_time": _FLOAT,
+    "gi_hull": _FLOAT,
+    "gi_closing": _FLOAT,
+    "gi_closing_radius_mm": _FLOAT,
+    "gi_exposed": _FLOAT,
+    "n_gyri": _INT,
+    "sulcal_depth_mm_max": _FLOAT,
+    "sulcal_depth_mm_mean": _FLOAT,
+    "thickness_mm_crown": _FLOAT,
+    "thickness_mm_fundus": _FLOAT,
+    "gyrus_width_mm": _FLOAT,
+    "gyrus_flatness": _FLOAT,
+    "fold_sharpness": _FLOAT,
+    "contour_length_mm": _FLOAT,
+    "min_gap_mm": _FLOAT,
+    "self_intersecting": _BOOL,
+    "min_J": _FLOAT,
+    "min_J_elastic": _FLOAT,
+    "nodes_per_wavelength": _FLOAT,
+    "onset_growth_time": _FLOAT,
+    "onset_mode_number": _INT,
+    "onset_wavelength_mm": _FLOAT,
+    "onset_eigenvalue": _FLOAT,
+    "stable": _BOOL,
+    "stability_note": _TEXT,
+    "solver_increments": _INT,
+    "solver_newton_iterations": _INT,
+    "solver_factorizations": _INT,
+    "solver_analyses": _INT,
+    "solver_rejected": _INT,
+    "solver_residual": _FLOAT,
+    "solver_tolerance": _FLOAT,
+    "solver_linear_solver": _TEXT,
+    "phenotype": _TEXT,
+    "phenotype_rule": _TEXT,
+}
+
+
+def write_results(folder: Path, points: Sequence[Point], records: Mapping[str, Record]) -> None:
+    """Write ``results.parquet`` and ``timings.csv``, by atomic rename.
+
+    Parameters
+    ----------
+    folder : Path
+        Study folder.
+    points : sequence of Point
+        The design, in the order of the rows.
+    records : mapping
+        What is known, by key; points that are not have no row.
+    """
+    import pyarrow.parquet as pq
+
+    known = [point for point in points if point.key in records]
+    partial = folder / f"{RESULTS}.partial"
+    pq.write_table(results_table(known, records), partial, compression="zstd")
+    os.replace(partial, folder / RESULTS)
+    lines = [f"{point.key},{records[point.key].wall_s:.4f}\n" for point in known]
+    partial.write_text("".join(["key,wall_s\n", *lines]), encoding="utf-8")
+    os.replace(partial, folder / TIMINGS)
+
+
+def results_table(points: Sequence[Point], records: Mapping[str, Record]) -> Table:
+    """One row per point.
+
+    Parameters
+    ----------
+    points : sequence of Point
+        The rows, in order; where one lacks a parameter that another has, its configuration's value stands.
+    records : mapping
+        What each came to, by key.
+
+    Returns
+    -------
+    pyarrow.Table
+    """
+    import pyarrow as pa
+
+    varied = list(dict.fromkeys(key for point in points for key in point.parameters))
+    rows = [_row(point, records[point.key], varied) for point in points]
+    names = list(dict.fromkeys([*_IDENTITY, *varied, *QUANTITIES, *(name for row in rows for name in row)]))
+    last = ("phenotype", "phenotype_rule", "result_hash")
+    names = [*(name for name in names if name not in last), *last]
+    columns = {}
+    for name in names:
+        values = [row.get(name) for row in rows]
+        kind = _kind(name, values)
+        if kind == pa.string():
+            values = [value if value is None or isinstance(value, str) else repr(value) for value in values]
+        columns[name] = pa.array(values, kind)
+    return pa.table(columns)
+
+
+def read_results(folder: str | Path) -> Table:
+    """Results of a study, with the time that each run took.
+
+    Parameters
+    ----------
+    folder : path
+        Study folder.
+
+    Returns
+    -------
+    pyarrow.Table
+        The columns of ``results.parquet``, and ``wall_s`` [s] from ``timings.csv``.
+
+    Raises
+    ------
+    HistoryError
+        If there are none.
+    """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    path = Path(folder) / RESULTS
+    if not path.is_file():
+        raise HistoryError(
+            f"There are no results in {folder}.", "Name a folder that `gyrify study` has written."
+        )
+    try:
+        table = pq.read_table(path)
+    except (OSError, pa.ArrowException) as fault:
+        raise HistoryError(
+            f"{path} is damaged: {' '.join(str(fault).split())[:120]}.",
+            "Run the study again: it rebuilds its results from the stored runs.",
+        ) from fault
+    times = _timings(path.with_name(TIMINGS))
+    return table.append_column("wall_s", pa.array(map(times.get, table["key"].to_pylist()), pa.float64()))
+
+
+def flat(nested: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Nested mappings as one, their keys joined with ``_``, as in ``metrics.csv``."""
+    found: dict[str, Any] = {}
+    for key, value in nested.items():
+        inner = flat(value, f"{prefix}{key}_") if isinstance(value, Mapping) else {f"{prefix}{key}": value}
+        found |= inner
+    return found
+
+
+def _row(point: Point, record: Record, varied: Iterable[str]) -> dict[str, Any]:
+    summary = record.summary or {}
+    quantities = flat(
+        {key: value for key, value in summary.items() if key not in _LEFT_OUT and value is not None}
+    )
+    is_whole = record.status == "completed"
+    label, rule = _phenotype(quantities, point.config) if is_whole else (None, None)
+    return {
+        "key": point.key,
+        **{name: getattr(record, name) for name in _IDENTITY[1:]},
+        **{key: value_of(point.config, key) for key in varied},
+        **{
+            name: value
+            for name, value in quantities.items()
+            if name not in _LEFT_OUT and (is_whole or name.startswith(_OF_ANY_END))
+        },
+        "phenotype": label,
+        "phenotype_rule": rule,
+        "result_hash": summary.get("result_hash"),
+    }
+
+
+def _phenotype(quantities: Mapping[str, Any], config: Config) -> tuple[str | None, str | None]:
+    """Label and rule; none for a strip, whose gyri are not those of a slice."""
+    if config.geometry.shape == "strip":
+        return None, None
+    try:
+        found = classify(quantities, grown_thickness(config))
+    except ConfigError:  # a metric is not finite
+        return None, None
+    return found.label, found.rule
+
+
+def _kind(name: str, values: Sequence[object]) -> DataType:
+    """Type of a column: the known one, or that of its values."""
+    import pyarrow as pa
+
+    if name in QUANTITIES:
+        return pa.type_for_alias(QUANTITIES[name])
+    kinds = {type(value) for value in values if value is not None}
+    if not kinds:
+        return pa.string() if name == "result_hash" else pa.float64()
+    for kind, alias in ({bool}, _BOOL), ({int}, _INT), ({int, float}, _FLOAT):
+        if kinds <= kind:
+            return pa.type_for_alias(alias)
+    return pa.string()
+
+
+def _timings(path: Path) -> dict[str, float]:
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()[1:]
+        return {key: float(value) for key, value in (line.split(",") for line in lines)}
+    except (OSError, ValueError):
+        return {}

@@ -1,0 +1,72 @@
+"""The documentation names every key, command, option, public name and symbol; written pages match."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+from types import ModuleType
+
+import pytest
+from blocks import ROOT
+
+import gyrify
+from gyrify.config import Config
+from gyrify.config.table import rows
+
+DOCS = ROOT / "docs"
+
+
+def text(name: str) -> str:
+    """A page of the documentation."""
+    return (DOCS / name).read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def writer() -> ModuleType:
+    """The script that writes the page of commands."""
+    spec = importlib.util.spec_from_file_location("make_command_line", DOCS / "make_command_line.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_every_configuration_key_is_documented() -> None:
+    keys = [row.key for row in rows(Config())]
+    assert len(keys) > 40
+    page = text("configuration.md")
+    absent = [key for key in keys if f"| `{key.rpartition('.')[2]}` |" not in page]
+    assert absent == []
+
+
+def test_the_page_of_commands_is_up_to_date(writer: ModuleType) -> None:
+    assert text("command-line.md") == writer.page(), "run: python docs/make_command_line.py"
+
+
+def test_the_page_of_commands_has_every_option(writer: ModuleType) -> None:
+    page, found = text("command-line.md"), 0
+    for name, command in writer.commands(writer.app):
+        section = page.split(f"## {name}\n")[1].split("\n## ")[0]
+        for argument in command.assemble_argument_collection():
+            if argument.show:
+                found += 1
+                assert f"`{argument.names[0]}" in section, f"{name} {argument.names[0]}"
+    assert found > 80
+
+
+def test_every_public_name_is_in_the_reference() -> None:
+    documented = set(
+        re.findall(
+            r"auto(?:class|function|exception):: gyrify\.(\w+)(?:\(.*\))?$", text("api.md"), re.MULTILINE
+        )
+    )
+    assert set(gyrify.__all__) - {"__version__"} - documented == set()
+    assert documented - set(gyrify.__all__) == set()
+
+
+def test_letters_of_the_house_are_in_the_notation() -> None:
+    page = text("notation.md")
+    letters = ["X", "x", "u", "F", "F_g", "F_e", "J", "J_g", "J_e", "I1", "P", "sigma", "W", "E", "nu", "mu"]
+    letters += ["kappa", "G", "T", "R", "d_hat", "barrier_stiffness", "GI", "n_gyri", "sulcal_depth", "tau"]
+    assert [letter for letter in letters if f"`{letter}`" not in page] == []

@@ -1,0 +1,93 @@
+"""Readings as data, their points, and a reading with several seeds."""
+
+from __future__ import annotations
+
+from statistics import fmean, stdev
+
+import pytest
+from fake_bench import FakeBench
+
+from gyrify.config import Config
+from gyrify.errors import ConfigError
+from gyrify.paper import Case, all_cases
+from gyrify.paper.cases import EQUAL, SOFT
+from gyrify.paper.ensemble import SEEDS, repeat, spread
+from gyrify.paper.reading import Mechanics, Reading, grid, point_of, require_gi
+from gyrify.paper.reproduce import reproduce
+
+
+def test_the_grid_has_every_combination_once() -> None:
+    assert len(grid()) == len(set(grid())) == 3 * 2 * 2 * 10
+    assert {one.element for one in grid("quadratic")} == {"quadratic"}
+
+
+def test_a_mechanics_is_read_from_a_configuration_and_written_back() -> None:
+    for one in grid("quadratic")[::7]:
+        if (one.out_of_plane, one.dissipation) == ("generalised", "kelvin_voigt"):
+            continue
+        assert Mechanics.of(Config().with_overrides(one.overrides)) == one
+    assert Mechanics.of(Config()) == Mechanics()
+
+
+def test_points_tell_what_differs_and_leave_the_rest() -> None:
+    base = Config().with_overrides({"mesh.n_around": 96})
+    point = point_of(base, Mechanics(number=0.13), Case(SOFT, 2.0, 3.0), seed=2)
+    assert point.parameters == {
+        "dissipation.number": 0.13,
+        "material.stiffness_ratio": SOFT,
+        "growth.ratio": 2.0,
+        "geometry.cortical_thickness": 3.0,
+        "seed": 2,
+    }
+    assert point.config.mesh.n_around == 96
+    assert point.config.seed == 2
+    assert not point.config.stability.detect
+
+
+def test_quadratic_triangles_have_as_many_nodes_around() -> None:
+    mesh = point_of(Config(), Mechanics(element="quadratic"), Case(), 0).config.mesh
+    assert (mesh.n_around, mesh.n_layers, mesh.n_cortex_layers) == (108, 9, 3)
+    base = Config().with_overrides({"mesh.element": "quadratic", "mesh.n_around": 54})
+    assert point_of(base, Mechanics.of(base), Case(), 0).config.mesh.n_around == 54
+
+
+def test_every_case_is_another_run() -> None:
+    keys = {point_of(Config(), Mechanics(), case, 0).key for case in all_cases()}
+    assert len(keys) == len(all_cases())
+
+
+@pytest.mark.parametrize("word", ["closing", "hull", "exposed"])
+def test_definitions_of_the_index(word: str) -> None:
+    assert require_gi(word) == word
+    with pytest.raises(ConfigError, match="gi = 'convex'"):
+        require_gi("convex")
+
+
+def test_the_index_of_the_reading_is_used_in_every_row() -> None:
+    bench = FakeBench()
+    closing, hull = (
+        reproduce(bench, Config(), Reading(Mechanics(), gi), stability=False) for gi in ("closing", "hull")
+    )
+    case = Case(EQUAL)
+    assert hull.rows[case].gi - 1 == pytest.approx(1.2 * (closing.rows[case].gi - 1))
+    assert hull.rows[case].label == closing.rows[case].label
+
+
+def test_several_seeds() -> None:
+    bench = FakeBench()
+    found = repeat(bench, Config(), Reading(), stability=False)
+    names = {entry.name: entry for entry in found.spreads()}
+    gi = [member.rows[Case(EQUAL)].gi for member in found.members]
+    assert len(set(gi)) == len(SEEDS)
+    assert names["GI, E = 1"].mean == pytest.approx(fmean(gi))
+    assert names["GI, E = 1"].deviation == pytest.approx(stdev(gi))
+    assert "growth ratio of visible folds, E = 1" in names
+    assert set(found.passes.values()) <= set(range(len(SEEDS) + 1))
+    assert found.passes["P1"] == len(SEEDS)
+    assert found.score.n == len(SEEDS)
+
+
+def test_spread_of_few_values() -> None:
+    assert spread("x", [1.0, 3.0, float("inf")]) == spread("x", [1.0, 3.0])
+    assert (spread("x", [2.0]).mean, spread("x", [2.0]).deviation) == (2.0, 0.0)
+    assert spread("x", []).n == 0
