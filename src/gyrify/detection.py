@@ -20,7 +20,8 @@ from gyrify.solve.stability import Eigenpair, Onset, Tangent
 from gyrify.solve.system import System
 from gyrify.solve.types import FloatArray
 
-# After onset every so many increments are looked at, and the last.
+# With dissipation every so many increments are looked at, and the last; the first unstable one is then sought
+# among those between.
 EVERY = 10
 # Tolerance of the onset, as a fraction of its increment; first step along a mode over the cortical thickness.
 _ONSET_TOLERANCE = 1e-3
@@ -43,6 +44,8 @@ class Detector:
         How growth is divided.
     found : bool
         Whether the onset is known already.
+    recall : callable
+        Gives an earlier accepted increment by its number.
     watch : callable
         Called at each Newton iteration; may raise to stop.
     n_negative : int or None
@@ -54,6 +57,7 @@ class Detector:
     problem: Slice
     stepping: Stepping
     found: bool
+    recall: Callable[[int], State]
     watch: Callable[[], None] = lambda: None
     n_negative: int | None = None
     onset: Onset | None = None
@@ -69,22 +73,44 @@ class Detector:
         """
         self.n_negative = self.onset = None
         conservative, end = self.problem.is_conservative, after.position == self.stepping.end
-        if not (conservative or end or not self.found or after.index % EVERY == 0):
+        if not (conservative or end or after.index % EVERY == 0):
             return after
-        if self._system is None:
-            self._system = self.problem.system(after.couplings)
         try:
-            self.n_negative = self._tangent(after, before, self._system).n_negative
-            if self.n_negative > 0 and not self.found:
-                system = self._system_for(after)
-                self.onset = locate_onset(self.problem, self.stepping, before, after, system, self.watch)
-                self.found = True
+            n_negative = self._look(before, after)
         except SolveError:
             if conservative:
                 raise
-        if conservative and self.n_negative:
-            return self._leave(before, after)
-        return after
+            return after
+        return self._leave(before, after) if conservative and n_negative > 0 else after
+
+    def _look(self, before: State, after: State) -> int:
+        """Count the negative pivots of an increment; locate the onset if it lies since the last look."""
+        if self._system is None:
+            self._system = self.problem.system(after.couplings)
+        self.n_negative = n_negative = self._tangent(after, before, self._system).n_negative
+        if n_negative > 0 and not self.found:
+            stable, unstable = self._first_unstable(before, after)
+            system = self._system_for(unstable)
+            self.onset = locate_onset(self.problem, self.stepping, stable, unstable, system, self.watch)
+            self.found = True
+        return n_negative
+
+    def _first_unstable(self, before: State, after: State) -> tuple[State, State]:
+        """By bisection, neighbouring increments since the last look, stable and unstable, up to ``after``."""
+        known = {before.index: before, after.index: after}
+        low = before.index if self.problem.is_conservative else (before.index // EVERY) * EVERY
+        high = after.index
+
+        def state(index: int) -> State:
+            if index not in known:
+                known[index] = self.recall(index)
+            return known[index]
+
+        while high - low > 1:
+            middle = (low + high) // 2
+            tangent = self._tangent(state(middle), state(middle - 1), self._system_for(state(middle)))
+            low, high = (middle, high) if tangent.is_stable else (low, middle)
+        return state(low), state(high)
 
     def _tangent(self, state: State, before: State, system: System) -> Tangent:
         return self.problem.tangent(state.position / self.stepping.end, state.u, before.u, system)
@@ -94,7 +120,8 @@ class Detector:
         known = self._system
         if known is not None and np.array_equal(known.couplings, state.couplings):
             return known
-        return self.problem.system(state.couplings)
+        self._system = self.problem.system(state.couplings)
+        return self._system
 
     def _leave(self, before: State, after: State) -> State:
         """Stable state that an unstable equilibrium leads to."""

@@ -15,6 +15,7 @@ from gyrify.energy.viscous import DragEnergy, KelvinVoigtEnergy, green_lagrange
 from gyrify.meshing import build_mesh
 from gyrify.solve.linear import linear_solver
 from gyrify.solve.newton import Criterion
+from gyrify.solve.quasi_newton import STEPS
 from gyrify.solve.quasistatic import State, Stepping
 from gyrify.solve.stability import Tangent
 from gyrify.solve.system import System
@@ -72,6 +73,11 @@ class Slice(Tissue):
     def shift_mass(self) -> FloatArray | None:
         """See `gyrify.solve.quasistatic.Problem`: the mass, unless a projection is asked for."""
         return self.free_mass if self.config.solver.regularisation == "shift" else None
+
+    @property
+    def old_steps(self) -> int:
+        """See `gyrify.solve.quasistatic.Problem`: without dissipation they might end on a saddle."""
+        return 0 if self.is_conservative else STEPS
 
     @property
     def is_path_kept(self) -> bool:

@@ -100,9 +100,7 @@ class Run:
         )
         try:
             self._accept(tuple(observers), watch)
-            last = self.journal.state(len(self.journal) - 1)
-            stable = self.problem.is_stable(last.position / self.problem.stepping.end, last.u)
-            self.journal.set_meta(status="completed", stable="true" if stable else "false")
+            self.journal.set_meta(status="completed", stable="true" if self._is_stable() else "false")
         except LimitReachedError as limit:
             self.journal.set_meta(status="stopped", reason=limit.message, advice=limit.advice)
         except KeyboardInterrupt:
@@ -120,6 +118,15 @@ class Run:
             reason = f"An unexpected {type(error).__name__} ended it: {error}."
             self._record("failed", reason, "Once its cause is removed, continue with `gyrify resume`.")
             raise
+
+    def _is_stable(self) -> bool:
+        """Whether the last state is stable without dissipation: seen by the detection, or looked at now."""
+        last = len(self.journal) - 1
+        known = self.journal.negative_pivots.get(last)
+        if known is not None:
+            return known == 0
+        state = self.journal.state(last)
+        return self.problem.is_stable(state.position / self.problem.stepping.end, state.u)
 
     def _linear_solver(self) -> str:
         """Library that solves; the one that the run began with, or its end would be another."""
@@ -146,7 +153,7 @@ class Run:
             watch()
             self._limits()
 
-        detector = Detector(problem, stepping, self.journal.onset is not None, look)
+        detector = Detector(problem, stepping, self.journal.onset is not None, self.journal.state, look)
         inspect = (detector.inspect,) if problem.config.stability.detect else ()
         clock = begun
         try:

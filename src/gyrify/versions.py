@@ -10,7 +10,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import Final
 
-LIBRARIES = ("gyrify", "numpy", "scipy", "numba", "ipctk", "shapely", "pypardiso", "mkl")
+LIBRARIES = ("gyrify", "numpy", "scipy", "numba", "ipctk", "shapely", "mkl")
 # What the result of a run is computed with: packages and modules of gyrify.
 NUMERICS: Final = (
     "config",

@@ -158,7 +158,9 @@ class Panel:
                 solution = solve(total, u, system, Criterion(tolerance * size, 200), lambda _: NO_PAIRS)
                 assert solution.result is Result.CONVERGED, (self.element, share, solution)
                 u = solution.u
-        assert system.factorise(total.evaluate(u, False), lambda: NO_PAIRS).n_negative == 0
+        assert (
+            system.factorise_data(system.assemble(total.evaluate(u, False), lambda: NO_PAIRS)).n_negative == 0
+        )
         return u
 
 

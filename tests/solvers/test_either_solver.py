@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import importlib.util
+from importlib.metadata import distributions
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ import pytest
 from gyrify import Config, ConfigError, measure_state, simulate
 from gyrify.solve.linear import linear_solver
 
-HAS_PARDISO = importlib.util.find_spec("pypardiso") is not None
+HAS_PARDISO = any(d.name == "mkl" for d in distributions())
 SMALL = {"mesh.n_around": 96, "mesh.n_layers": 10, "mesh.n_cortex_layers": 4, "solver.increments": 40}
 
 

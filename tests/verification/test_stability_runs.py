@@ -39,15 +39,22 @@ def test_detection_leaves_a_run_as_it_is(folding: Config, folded: History) -> No
     assert without.stable == folded.stable
 
 
-def test_each_increment_until_onset_then_every_tenth_and_the_last(folded: History) -> None:
-    looked_at = sorted(folded.negative_pivots)
-    onset = folded.onset
+def test_every_tenth_increment_and_the_last_are_looked_at(folded: History) -> None:
+    last = len(folded) - 1
+    assert sorted(folded.negative_pivots) == [k for k in range(1, last + 1) if k % 10 == 0 or k == last]
+
+
+def test_onset_lies_in_the_first_increment_that_ends_unstable(folded: History) -> None:
+    """Sought by bisection between looks; here every increment up to it is looked at."""
+    onset, problem, stepping = folded.onset, folded.slice, folded.slice.stepping
     assert onset is not None
     first = int(np.searchsorted(folded.growth_times, onset.growth_time))
-    last = len(folded) - 1
-    expected = [*range(1, first + 1), *(k for k in range(first + 1, last + 1) if k % 10 == 0 or k == last)]
-    assert looked_at == expected
-    counts = [folded.negative_pivots[k] for k in range(1, first + 1)]
+    system = problem.system(NO_PAIRS)
+    states = [folded.journal.state(k) for k in range(first + 1)]
+    counts = [
+        problem.tangent(state.position / stepping.end, state.u, state.u_before, system).n_negative
+        for state in states
+    ]
     assert counts[-1] > 0
     assert not any(counts[:-1])
 

@@ -98,7 +98,9 @@ def axial_pattern(cells: IntArray, n_points: int) -> CellPattern:
 def _tangent(F: FloatArray, f33: FloatArray, mu: FloatArray, kappa: FloatArray) -> FloatArray:
     """(n, 5, 5) tangent of an isotropic solid; see `gyrify.physics.isotropic`."""
     I1, J = invariants(F, f33)
-    a, b, c, d, e = (np.asarray(m) * np.ones_like(J) for m in coefficients.py_func(I1, J, mu, kappa, 0.0))
+    a, b, c, d, e = (
+        np.asarray(m) * np.ones_like(J) for m in coefficients.py_func(I1, J, np.cbrt(J), mu, kappa, 0.0)
+    )
     H = np.swapaxes(np.linalg.inv(F), 1, 2)
     stretch = np.concatenate([F.reshape(-1, 4), f33[:, None]], axis=1)
     normal = np.concatenate([H.reshape(-1, 4), 1.0 / f33[:, None]], axis=1)

@@ -1,9 +1,4 @@
-"""Compiled loops over integration points, specialised for a dimension and a number of nodes.
-
-The cell matrix needs no tangent tensor: with h_a = H g_a and f_a = F g_a of the shape-function gradients
-g_a, every term of `gyrify.physics.isotropic` becomes a product of nodal vectors. Only where a projection
-is asked for is the tangent formed as a matrix.
-"""
+"""Compiled loops over integration points, specialised for a dimension and a number of nodes."""
 
 from __future__ import annotations
 
@@ -16,19 +11,24 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
-from gyrify.energy import cell, projection
-from gyrify.energy.cell import (
+from gyrify.energy import cell, lanes, projection
+from gyrify.energy.cell import deform, invert
+from gyrify.energy.lanes import (
+    LANES,
     add_forces,
-    add_matrix,
+    add_matrices,
+    add_products,
     add_projected,
-    deform,
-    invert,
+    energy,
+    gather,
+    invariants,
+    load,
     nodal_vectors,
     step_to_inversion,
+    weigh_moduli,
 )
+from gyrify.energy.lanes import invert as invert_all
 from gyrify.physics import isotropic, neo_hookean
-from gyrify.physics.isotropic import coefficients
-from gyrify.physics.neo_hookean import density
 
 # Closures may capture integers only: numba finds them again in its cache, but not captured functions. The
 # cache looks at this file alone, so that the digest of what the kernels are made of is one of the integers.
@@ -57,12 +57,12 @@ def elastic_kernels(n_dim: int, n_nodes: int) -> ElasticKernels:
 
 def _sources_digest() -> int:
     """Checksum, not negative, of the source of everything that is compiled into the kernels."""
-    modules = (cell, projection, isotropic, neo_hookean)
+    modules = (cell, lanes, projection, isotropic, neo_hookean)
     return zlib.crc32("".join(map(inspect.getsource, modules)).encode())
 
 
 def _accumulate(n_dim: int, n_nodes: int, digest: int) -> Any:
-    @njit(cache=True)
+    @njit(cache=True, error_model="numpy")
     def accumulate(  # type: ignore[no-untyped-def]
         u,
         cells,
@@ -80,51 +80,59 @@ def _accumulate(n_dim: int, n_nodes: int, digest: int) -> Any:
         values,
     ):
         """Add every point's energy, forces and matrix; infinite as soon as one is inverted."""
-        F, H = np.empty((n_dim, n_dim)), np.empty((n_dim + 0 * digest, n_dim))
-        f, h = np.empty((n_nodes, n_dim)), np.empty((n_nodes, n_dim))
+        x = np.empty((n_nodes, n_dim, LANES))
+        F, H = np.empty((n_dim, n_dim, LANES)), np.empty((n_dim + 0 * digest, n_dim, LANES))
+        f, h = np.empty((n_nodes, n_dim, LANES)), np.empty((n_nodes, n_dim, LANES))
+        det, I1, J, root = np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES)
+        moduli, entries = np.empty((5, LANES)), np.empty(LANES)
         value = 0.0
-        for c in range(cells.shape[0]):
-            deform(n_dim, n_nodes, u, cells[c], base[c], gradients[c], F)
-            det = invert(n_dim, F, H)
-            if not det > 0.0:
+        for first in range(0, cells.shape[0], LANES):
+            n = min(LANES, cells.shape[0] - first)
+            gather(n_dim, n_nodes, first, n, u, cells, x)
+            load(n_dim, first, n, base, F)
+            add_products(n_dim, n_nodes, first, n, x, gradients, F)
+            if not invert_all(n_dim, n, F, H, det) > 0.0:
                 return np.inf
-            J, I1 = det * f33[c], f33[c] * f33[c] if n_dim == 2 else 0.0
-            for i in range(n_dim):
-                for j in range(n_dim):
-                    I1 += F[i, j] * F[i, j]
-            value += weight[c] * density(I1, J, mu[c], kappa[c])
+            invariants(n_dim, first, n, F, det, f33, I1, J, root)
+            value += energy(first, n, I1, J, root, mu, kappa, weight, entries)
             if order == 0:
                 continue
-            moduli = coefficients(I1, J, mu[c], kappa[c], pressure[c])
-            nodal_vectors(n_dim, n_nodes, F, H, gradients[c], f, h)
-            add_forces(n_dim, n_nodes, f, h, moduli, weight[c], cells[c], gradient)
+            weigh_moduli(first, n, I1, J, root, mu, kappa, pressure, weight, moduli)
+            nodal_vectors(n_dim, n_nodes, first, n, F, H, gradients, f, h)
+            add_forces(n_dim, n_nodes, first, n, f, h, moduli, cells, gradient)
             if order == 2 and project_psd:
-                add_projected(n_dim, n_nodes, F, H, gradients[c], moduli, weight[c], position[c], values)
+                add_projected(n_dim, n_nodes, first, n, F, H, gradients, moduli, position, values)
             elif order == 2:
-                add_matrix(n_dim, n_nodes, f, h, gradients[c], moduli, weight[c], position[c], values)
+                add_matrices(n_dim, n_nodes, first, n, f, h, gradients, moduli, position, entries, values)
         return value
 
     return accumulate
 
 
 def _largest_step(n_dim: int, n_nodes: int, digest: int) -> Any:
-    @njit(cache=True)
+    @njit(cache=True, error_model="numpy")
     def largest_step(u, du, cells, base, gradients):  # type: ignore[no-untyped-def]
         """Smallest positive root over the points of det(F + s D) = 0, at most 1.
 
         In the plane the determinant is a quadratic in s with an exact root; in space the step is halved
         until nothing is inverted at its end.
         """
-        F, D, H = np.empty((n_dim, n_dim)), np.empty((n_dim, n_dim)), np.empty((n_dim + 0 * digest, n_dim))
-        zero = np.zeros((n_dim, n_dim))
+        x = np.empty((n_nodes, n_dim, LANES))
+        F, D = np.empty((n_dim + 0 * digest, n_dim, LANES)), np.empty((n_dim, n_dim, LANES))
+        H, scratch = np.empty((n_dim, n_dim, LANES)), np.empty(LANES)
         largest = 1.0
-        for c in range(cells.shape[0]):
-            deform(n_dim, n_nodes, u, cells[c], base[c], gradients[c], F)
-            deform(n_dim, n_nodes, du, cells[c], zero, gradients[c], D)
+        for first in range(0, cells.shape[0], LANES):
+            n = min(LANES, cells.shape[0] - first)
+            gather(n_dim, n_nodes, first, n, u, cells, x)
+            load(n_dim, first, n, base, F)
+            add_products(n_dim, n_nodes, first, n, x, gradients, F)
+            gather(n_dim, n_nodes, first, n, du, cells, x)
+            D[:] = 0.0
+            add_products(n_dim, n_nodes, first, n, x, gradients, D)
             if n_dim == 2:
-                largest = min(largest, step_to_inversion(F, D))
+                largest = min(largest, step_to_inversion(n, F, D, scratch))
             else:
-                while largest > 1e-12 and not invert(n_dim, F + largest * D, H) > 0.0:
+                while largest > 1e-12 and not invert_all(n_dim, n, F + largest * D, H, scratch) > 0.0:
                     largest *= 0.5
         return largest
 
@@ -132,7 +140,7 @@ def _largest_step(n_dim: int, n_nodes: int, digest: int) -> Any:
 
 
 def _grow(n_dim: int, n_nodes: int, digest: int) -> Any:
-    @njit(cache=True)
+    @njit(cache=True, error_model="numpy")
     def grow(F_g, gradients, base, grown, det):  # type: ignore[no-untyped-def]
         """Write F_g^{-1}, the gradients with respect to the grown cell, and det F_g in the plane."""
         H = np.empty((n_dim + 0 * digest, n_dim))
@@ -140,18 +148,20 @@ def _grow(n_dim: int, n_nodes: int, digest: int) -> Any:
             det[c] = invert(n_dim, F_g[c], H)
             for i in range(n_dim):
                 for j in range(n_dim):
-                    base[c, i, j] = H[j, i]
-            for a in range(n_nodes):
-                for j in range(n_dim):
-                    grown[c, a, j] = 0.0
-                    for i in range(n_dim):
-                        grown[c, a, j] += gradients[c, a, i] * base[c, i, j]
+                    base[i, j, c] = H[j, i]
+        for a in range(n_nodes):
+            for j in range(n_dim):
+                for c in range(F_g.shape[0]):
+                    grown[a, j, c] = 0.0
+                for i in range(n_dim):
+                    for c in range(F_g.shape[0]):
+                        grown[a, j, c] += gradients[a, i, c] * base[i, j, c]
 
     return grow
 
 
 def _volume_ratio(n_dim: int, n_nodes: int, digest: int) -> Any:
-    @njit(cache=True)
+    @njit(cache=True, error_model="numpy")
     def volume_ratio(u, cells, gradients, ratio):  # type: ignore[no-untyped-def]
         """Write det(I + grad u)."""
         F, H, identity = np.empty((n_dim, n_dim)), np.empty((n_dim + 0 * digest, n_dim)), np.eye(n_dim)

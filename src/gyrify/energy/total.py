@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from gyrify.energy.cell import scatter_add
 from gyrify.energy.term import EnergyTerm, Evaluation, FloatArray, IntArray, Pattern
 
 
@@ -43,8 +44,7 @@ class FreePattern:
         mapped = self._map(pattern)
         if mapped is None:
             raise ValueError("the pattern of a term is not held by the pattern of the sum")
-        source, target = mapped
-        data[target] += values[source]
+        scatter_add(*mapped, values, data)
 
     def _map(self, pattern: Pattern) -> tuple[IntArray, IntArray] | None:
         """Which entries of a term go where; kept for as long as the term keeps its pattern."""
@@ -82,6 +82,17 @@ class TotalEnergy:
             if not np.isfinite(total):
                 return np.inf
         return total
+
+    def slope(self, u: FloatArray) -> tuple[float, FloatArray]:
+        """Total energy [Pa mm^2] and its gradient [Pa mm]; infinite and zero where not admissible."""
+        total, gradient = 0.0, np.zeros_like(u)
+        for term in self.terms:
+            evaluation = term.evaluate(u, 1)
+            total += evaluation.value
+            if evaluation.gradient is None:
+                return np.inf, np.zeros_like(u)
+            gradient += evaluation.gradient
+        return total, gradient
 
     def evaluate(self, u: FloatArray, project_psd: bool) -> list[Evaluation]:
         """Each term with its Hessian, for the solver to sum on a pattern that holds them all."""

@@ -36,7 +36,9 @@ class DragEnergy:
         rate = u - self.previous
         force = self.weight[:, None] * rate
         hessian = Hessian(self._pattern, np.repeat(self.weight, u.shape[1])) if order >= 2 else None
-        return Evaluation(0.5 * float(np.sum(force * rate)), force if order >= 1 else None, hessian)
+        return Evaluation(
+            0.5 * float(np.einsum("pi,pi->", force, rate)), force if order >= 1 else None, hessian
+        )
 
     def max_step(self, u: FloatArray, du: FloatArray) -> float:  # noqa: ARG002
         """No limit."""

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
-from scipy.signal import find_peaks
 
 from gyrify.errors import ConfigError
 from gyrify.metrics.contour import (
@@ -21,6 +20,7 @@ from gyrify.metrics.contour import (
     resample,
     ring_vertices,
 )
+from gyrify.metrics.peaks import prominent_maxima
 
 # Undulations with up to this many periods around the brain are its shape; folds are five or more.
 SHAPE_MODES = 4
@@ -248,7 +248,7 @@ def _periodic_maxima(profile: FloatArray, prominence: float) -> NDArray[np.int64
     """Return the maxima; cut open at the lowest point, a period has the prominences it has on the circle."""
     lowest = int(np.argmin(profile))
     cut = np.concatenate([profile[lowest:], profile[: lowest + 1]])
-    peaks, _ = find_peaks(cut, prominence=prominence)
+    peaks = prominent_maxima(cut, prominence)
     return np.sort((peaks + lowest) % len(profile)).astype(np.int64)
 
 

@@ -53,6 +53,8 @@ def growth_tensor(stretch: FloatArray, tangential: NDArray[np.bool_], across: Fl
     """
     n_dim = across.shape[1]
     tensor = stretch[:, None, None] * np.eye(n_dim)
+    if not tangential.any():
+        return tensor
     normal = np.where(tangential, 1.0 - stretch, 0.0)
     return tensor + normal[:, None, None] * across[:, :, None] * across[:, None, :]
 

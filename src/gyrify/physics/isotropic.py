@@ -23,9 +23,9 @@ FloatArray = NDArray[np.float64]
 
 
 @njit(cache=True, inline="always")
-def coefficients(I1, J, mu, kappa, pressure):  # type: ignore[no-untyped-def]
+def coefficients(I1, J, cube_root, mu, kappa, pressure):  # type: ignore[no-untyped-def]
     """a, b, c, d, e [Pa] of stress and tangent; a given pressure is added to dW/dJ."""
-    W_1, W_J, W_11, W_1J, W_JJ = derivatives(I1, J, mu, kappa)
+    W_1, W_J, W_11, W_1J, W_JJ = derivatives(I1, J, cube_root, mu, kappa)
     b = J * (W_J + pressure)
     return 2.0 * W_1, b, b + J * J * W_JJ, 4.0 * W_11, 2.0 * J * W_1J
 
@@ -48,7 +48,7 @@ def energy_density(F: FloatArray, f33: FloatArray, mu: FloatArray, kappa: FloatA
         W [Pa].
     """
     I1, J = invariants(F, f33)
-    return np.asarray(density.py_func(I1, J, mu, kappa))
+    return np.asarray(density.py_func(I1, J, np.cbrt(J), mu, kappa))
 
 
 def first_piola(
@@ -64,7 +64,7 @@ def first_piola(
         Out-of-plane entry [Pa].
     """
     I1, J = invariants(F, f33)
-    W_1, W_J, _, _, _ = derivatives.py_func(I1, J, mu, kappa)
+    W_1, W_J, _, _, _ = derivatives.py_func(I1, J, np.cbrt(J), mu, kappa)
     H = np.swapaxes(np.linalg.inv(F), 1, 2)
     P = (2.0 * W_1)[:, None, None] * F + (J * W_J)[:, None, None] * H
     return P, 2.0 * W_1 * f33 + J * W_J / f33

@@ -9,7 +9,6 @@ derivatives by the invariants, from which `gyrify.physics.isotropic` forms stres
 
 from __future__ import annotations
 
-import numpy as np
 from numba import njit
 
 
@@ -32,16 +31,14 @@ def lame_parameters(young_modulus: float, poisson_ratio: float) -> tuple[float, 
 
 
 @njit(cache=True, inline="always")
-def density(I1, J, mu, kappa):  # type: ignore[no-untyped-def]
-    """W [Pa]."""
-    cube_root = np.cbrt(J)
+def density(I1, J, cube_root, mu, kappa):  # type: ignore[no-untyped-def]
+    """W [Pa]; the cube root of J is given because it costs more than all the rest."""
     return 0.5 * mu * (I1 / (cube_root * cube_root) - 3.0) + 0.5 * kappa * (J - 1.0) * (J - 1.0)
 
 
 @njit(cache=True, inline="always")
-def derivatives(I1, J, mu, kappa):  # type: ignore[no-untyped-def]
+def derivatives(I1, J, cube_root, mu, kappa):  # type: ignore[no-untyped-def]
     """W_1, W_J, W_11, W_1J, W_JJ [Pa]: derivatives of W by I1 and J."""
-    cube_root = np.cbrt(J)
     power = mu / (cube_root * cube_root)
     return (
         0.5 * power,

@@ -10,10 +10,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from gyrify.energy.term import Evaluation
 from gyrify.energy.total import TotalEnergy
 from gyrify.errors import SolveError
-from gyrify.solve.newton import SMALLEST_STEP, Criterion, free_gradient, largest_force
+from gyrify.solve.newton import SMALLEST_STEP, Criterion, Iterate
 from gyrify.solve.result import Result, Solution, Stats
 from gyrify.solve.system import System
 from gyrify.solve.types import FloatArray, IntArray
@@ -52,44 +51,40 @@ def find_equilibrium(
     Solution
     """
     before = (system.factorizations, system.analyses)
-    if not np.isfinite(total.value(u)):
+    at = Iterate.at(total, u, system)
+    if not np.isfinite(at.value):
         return Solution(u, Result.INADMISSIBLE, np.inf, Stats())
-    evaluations = total.evaluate(u, project_psd=False)
-    gradient = free_gradient(evaluations, system)
     result, iteration = Result.MAX_NEWTON, 0
     while result is Result.MAX_NEWTON and iteration < criterion.max_iterations:
         watch()
-        if largest_force(gradient, system) <= criterion.force:
+        if at.residual <= criterion.force:
             result = Result.CONVERGED
             break
         iteration += 1
         try:
-            factor = system.factorise_data(system.assemble(evaluations, lambda u=u: candidates(u)))  # type: ignore[misc]
+            evaluations = total.evaluate(at.u, project_psd=False)
+            factor = system.factorise_data(system.assemble(evaluations, lambda at=at: candidates(at.u)))  # type: ignore[misc]
             du = np.zeros(system.n_dofs)
-            du[system.free] = -factor.solve(gradient)
+            du[system.free] = -factor.solve(at.gradient)
         except SolveError:
             result = Result.SINGULAR
             break
-        moved = _damped_step(total, u, du.reshape(u.shape), gradient, system)
+        moved = _damped_step(total, at, du.reshape(u.shape), system)
         if moved is None:
             result = Result.LINE_SEARCH
             break
-        u, evaluations, gradient = moved
+        at = moved
     work = Stats(iteration, system.factorizations - before[0], system.analyses - before[1])
-    return Solution(u, result, largest_force(gradient, system), work)
+    return Solution(at.u, result, at.residual, work)
 
 
-def _damped_step(
-    total: TotalEnergy, u: FloatArray, du: FloatArray, gradient: FloatArray, system: System
-) -> tuple[FloatArray, list[Evaluation], FloatArray] | None:
-    """State, evaluations and gradient after the first of ever shorter steps that lowers the residual."""
-    size, step = float(np.linalg.norm(gradient)), total.max_step(u, du)
+def _damped_step(total: TotalEnergy, at: Iterate, du: FloatArray, system: System) -> Iterate | None:
+    """First of ever shorter steps that lowers the residual."""
+    size, step = float(np.linalg.norm(at.gradient)), total.max_step(at.u, du)
     while step >= SMALLEST_STEP:
-        trial = u + step * du
-        evaluations = total.evaluate(trial, project_psd=False)
-        if all(np.isfinite(e.value) for e in evaluations):
-            after = free_gradient(evaluations, system)
-            if float(np.linalg.norm(after)) <= (1.0 - _SUFFICIENT_DECREASE * step) * size:
-                return trial, evaluations, after
+        trial = Iterate.at(total, at.u + step * du, system)
+        after = float(np.linalg.norm(trial.gradient))
+        if np.isfinite(trial.value) and after <= (1.0 - _SUFFICIENT_DECREASE * step) * size:
+            return trial
         step *= 0.5
     return None

@@ -46,7 +46,15 @@ class LinearSolver(Protocol):
         ...
 
     def factorise(self, data: FloatArray) -> Factor:
-        """Factorise the matrix with these values on the analysed pattern."""
+        """Factorise the matrix with these values on the analysed pattern, and count its inertia."""
+        ...
+
+    def factorise_definite(self, data: FloatArray) -> Factor | None:
+        """Factorise where no pivot is found negative, else None.
+
+        Never dearer than `factorise`, but next to a singular matrix a negative pivot may be overlooked: to be
+        used where that does no harm.
+        """
         ...
 
 
@@ -109,6 +117,11 @@ class SuperLU:
         """See `LinearSolver`."""
         self._matrix.data = data[self._source]
         return SuperLUFactor(self._matrix, self._order)
+
+    def factorise_definite(self, data: FloatArray) -> SuperLUFactor | None:
+        """See `LinearSolver`."""
+        factor = self.factorise(data)
+        return factor if factor.n_negative == 0 else None
 
 
 class SuperLUFactor:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from gyrify.energy.term import Evaluation
 from gyrify.energy.total import TotalEnergy
 from gyrify.errors import SolveError
 from gyrify.solve.linear import Factor
+from gyrify.solve.quasi_newton import STEPS, QuasiNewton
 from gyrify.solve.result import Result, Solution, Stats
 from gyrify.solve.shift import shifted_factor
 from gyrify.solve.system import System
@@ -38,14 +38,44 @@ class Criterion:
     max_iterations: int
 
 
+@dataclass(frozen=True, eq=False)
+class Iterate:
+    """A state with its energy and the forces on it.
+
+    Attributes
+    ----------
+    u : (n_points, n_dim) float array
+        Displacement [mm].
+    value : float
+        Total energy [Pa mm^2]; infinite where not admissible.
+    gradient : (n_free,) float array
+        Its gradient [Pa mm].
+    residual : float
+        Largest nodal force [Pa mm].
+    """
+
+    u: FloatArray
+    value: float
+    gradient: FloatArray
+    residual: float
+
+    @staticmethod
+    def at(total: TotalEnergy, u: FloatArray, system: System) -> Iterate:
+        """Evaluate a state."""
+        value, gradient = total.slope(u)
+        free = gradient.ravel()[system.free]
+        return Iterate(u, value, free, largest_force(free, system) if np.isfinite(value) else np.inf)
+
+
 def minimise(
     total: TotalEnergy,
-    u: FloatArray,
+    start: FloatArray | Iterate,
     system: System,
     criterion: Criterion,
     candidates: Callable[[FloatArray], IntArray],
     watch: Callable[[], None] = lambda: None,
     mass: FloatArray | None = None,
+    old_steps: int = STEPS,
 ) -> Solution:
     """Minimise the total energy from a starting state.
 
@@ -53,8 +83,8 @@ def minimise(
     ----------
     total : TotalEnergy
         What to minimise.
-    u : (n_points, n_dim) float array
-        Admissible starting state [mm].
+    start : (n_points, n_dim) float array or Iterate
+        Admissible starting state [mm], evaluated already or not.
     system : System
         Linear system of the free degrees of freedom.
     criterion : Criterion
@@ -66,87 +96,90 @@ def minimise(
     mass : (n_free,) float array, optional
         Lumped area [mm^2]: an indefinite Hessian is then shifted by a multiple of it instead of projected,
         which is what leads along the flat valleys of a tissue that buckles without dissipation.
+    old_steps : int
+        How many steps with an old Hessian are worth trying; see `QuasiNewton`.
 
     Returns
     -------
     Solution
     """
     before = (system.factorizations, system.analyses)
-    value = total.value(u)
+    at = start if isinstance(start, Iterate) else Iterate.at(total, start, system)
+    model = QuasiNewton(old_steps)
     # MAX_NEWTON is what it comes to unless something else happens first.
-    result, residual, iteration = Result.MAX_NEWTON, np.inf, 0
-    if not np.isfinite(value):
-        result = Result.INADMISSIBLE
+    result, iteration = Result.MAX_NEWTON if np.isfinite(at.value) else Result.INADMISSIBLE, 0
     while result is Result.MAX_NEWTON:
         watch()
-        evaluations = total.evaluate(u, project_psd=False)
-        gradient = free_gradient(evaluations, system)
-        residual = largest_force(gradient, system)
-        if residual <= criterion.force:
+        if at.residual <= criterion.force:
             result = Result.CONVERGED
         if result is Result.CONVERGED or iteration == criterion.max_iterations:
             break
         iteration += 1
+        is_old = model.serves(at.residual, criterion.force)
         try:
-            du = _direction(total, u, evaluations, gradient, system, candidates, mass)
+            if not is_old:
+                model.renew(_definite_factor(total, at.u, system, candidates, mass))
+            du = model.direction(at.gradient)
         except SolveError:
             result = Result.SINGULAR
             break
-        slope = float(gradient @ du.ravel()[system.free])
-        step, value, result = _line_search(total, u, du, value, slope)
-        u = u + step * du
+        step, after, result = _line_search(total, at, du, system)
+        if result is not Result.MAX_NEWTON and is_old:
+            # an old factor may fail where a new one does not
+            model.renew(None)
+            result = Result.MAX_NEWTON
+        elif result is Result.MAX_NEWTON:
+            # a shortened step says nothing of the next one
+            contraction = min(1.0, after.residual / at.residual) if step == 1.0 else 1.0
+            model.learn(step * du, after.gradient - at.gradient, contraction)
+        at = after
     work = Stats(iteration, system.factorizations - before[0], system.analyses - before[1])
-    return Solution(u, result, residual, work)
+    return Solution(at.u, result, at.residual, work)
 
 
 def largest_force(gradient: FloatArray, system: System) -> float:
     """Largest Euclidean norm of the force on a free point [Pa mm]."""
     forces = np.zeros(system.n_dofs)
     forces[system.free] = gradient
-    return float(np.sqrt(np.square(forces.reshape(-1, system.n_dim)).sum(axis=1).max()))
+    by_point = forces.reshape(-1, system.n_dim)
+    return float(np.sqrt(np.einsum("pi,pi->p", by_point, by_point).max()))
 
 
-def free_gradient(evaluations: Sequence[Evaluation], system: System) -> FloatArray:
-    """(n_free,) sum of the gradients of all terms [Pa mm]."""
-    total = np.zeros(system.n_dofs)
-    for evaluation in evaluations:
-        if evaluation.gradient is not None:
-            total += evaluation.gradient.ravel()
-    return total[system.free]
-
-
-def _direction(
+def _definite_factor(
     total: TotalEnergy,
     u: FloatArray,
-    evaluations: Sequence[Evaluation],
-    gradient: FloatArray,
     system: System,
     candidates: Callable[[FloatArray], IntArray],
     mass: FloatArray | None,
-) -> FloatArray:
-    """Newton direction of the exact Hessian, or of the projected or shifted one where that is indefinite."""
-    data = system.assemble(evaluations, lambda: candidates(u))
-    factor: Factor = system.factorise_data(data)
-    if factor.n_negative > 0 and mass is not None:
-        factor = shifted_factor(system, data, mass, growth=4.0)
-    elif factor.n_negative > 0:
-        factor = system.factorise(total.evaluate(u, project_psd=True), lambda: candidates(u))
-    du = np.zeros(system.n_dofs)
-    du[system.free] = -factor.solve(gradient)
-    return du.reshape(u.shape)
+) -> Factor:
+    """Factor of the exact Hessian, or of the projected or shifted one where that is indefinite."""
+    data = system.assemble(total.evaluate(u, project_psd=False), lambda: candidates(u))
+    factor = system.factorise_definite(data)
+    if factor is not None:
+        return factor
+    if mass is not None:
+        return shifted_factor(system, data, mass, growth=4.0)
+    data = system.assemble(total.evaluate(u, project_psd=True), lambda: candidates(u))
+    return system.factorise_data(data)
 
 
 def _line_search(
-    total: TotalEnergy, u: FloatArray, du: FloatArray, value: float, slope: float
-) -> tuple[float, float, Result]:
-    """First step of a halving sequence that lowers the energy enough, its energy, and how to go on."""
-    step = total.max_step(u, du)
+    total: TotalEnergy, at: Iterate, direction: FloatArray, system: System
+) -> tuple[float, Iterate, Result]:
+    """First step of a halving sequence that lowers the energy enough, where it leads, and how to go on."""
+    # not a product of BLAS, whose sums depend on the number of threads
+    slope = float(np.einsum("i,i->", at.gradient, direction))
+    if not slope < 0.0:  # a negative pivot next to zero was overlooked
+        return 0.0, at, Result.LINE_SEARCH
+    du = np.zeros(at.u.shape)
+    du.ravel()[system.free] = direction
+    step = total.max_step(at.u, du)
     if step < SMALLEST_STEP:
-        return 0.0, value, Result.BLOCKED
-    noise = ROUNDING * abs(value)
+        return 0.0, at, Result.BLOCKED
+    noise = ROUNDING * abs(at.value)
     while step >= SMALLEST_STEP:
-        trial = total.value(u + step * du)
-        if trial <= value + SUFFICIENT_DECREASE * step * slope + noise:
+        trial = Iterate.at(total, at.u + step * du, system)
+        if trial.value <= at.value + SUFFICIENT_DECREASE * step * slope + noise:
             return step, trial, Result.MAX_NEWTON
         step *= 0.5
-    return 0.0, value, Result.LINE_SEARCH
+    return 0.0, at, Result.LINE_SEARCH

@@ -11,7 +11,7 @@ import numpy as np
 from gyrify.energy.total import TotalEnergy
 from gyrify.errors import SolveError
 from gyrify.solve.equilibrium import find_equilibrium
-from gyrify.solve.newton import Criterion, minimise
+from gyrify.solve.newton import Criterion, Iterate, minimise
 from gyrify.solve.result import Result, Solution, Stats
 from gyrify.solve.system import System
 from gyrify.solve.types import FloatArray, IntArray
@@ -71,6 +71,11 @@ class Problem(Protocol):
     @property
     def shift_mass(self) -> FloatArray | None:
         """Diagonal of the mass that indefinite Hessians are shifted by; None to project them."""
+        ...
+
+    @property
+    def old_steps(self) -> int:
+        """How many steps with an old Hessian are worth trying; see `gyrify.solve.newton.minimise`."""
         ...
 
     @property
@@ -210,9 +215,16 @@ def _attempt(
     total = problem.energy(fraction, state, start_fraction)
     solution = _continued(problem, stepping, total, state, span, system, watch)
     if solution is None:
-        guess = _predict(total, state, span)
+        guess = _predict(total, state, span, system)
         solution = minimise(
-            total, guess, system, stepping.criterion, problem.candidates, watch, problem.shift_mass
+            total,
+            guess,
+            system,
+            stepping.criterion,
+            problem.candidates,
+            watch,
+            problem.shift_mass,
+            problem.old_steps,
         )
     if solution.result is Result.CONVERGED and not problem.is_path_admissible(state.u, solution.u):
         return replace(solution, result=Result.CROSSING_PATH)
@@ -241,8 +253,8 @@ def _continued(
     return None
 
 
-def _predict(total: TotalEnergy, state: State, span: int) -> FloatArray:
+def _predict(total: TotalEnergy, state: State, span: int, system: System) -> Iterate:
     """Linear extrapolation as far as it is admissible, if it lowers the energy."""
     step = (state.u - state.u_before) * (span / state.span)
-    guess = state.u + total.max_step(state.u, step) * step
-    return guess if total.value(guess) < total.value(state.u) else state.u
+    guess = Iterate.at(total, state.u + total.max_step(state.u, step) * step, system)
+    return guess if guess.value < total.value(state.u) else Iterate.at(total, state.u, system)

@@ -44,8 +44,8 @@ def shifted_factor(
     for _ in range(_RAISES):
         shifted = data.copy()
         shifted[diagonal] += tau * mass
-        factor = system.factorise_data(shifted)
-        if factor.n_negative == 0:
+        factor = system.factorise_definite(shifted)
+        if factor is not None:
             return factor
         tau *= growth
     raise SolveError(

@@ -110,9 +110,7 @@ class Tangent:
         self._system, self.mass = system, mass
         self._data = system.assemble(evaluations, candidates)
         self._pattern = system.pattern
-        self._factor: Factor = system.factorise_data(self._data)
-        self._number = system.factorizations
-        self.n_negative = self._factor.n_negative
+        self.n_negative = system.factorise_data(self._data).n_negative
 
     @property
     def is_stable(self) -> bool:
@@ -159,10 +157,8 @@ class Tangent:
             raise RuntimeError("the pattern has grown since this tangent was assembled")
         if self.n_negative > 0:
             return shifted_factor(self._system, self._data, self.mass, -1.2 * guess)
-        if self._number != self._system.factorizations:
-            self._factor = self._system.factorise_data(self._data)
-            self._number = self._system.factorizations
-        return self._factor
+        factor = self._system.factorise_definite(self._data)
+        return self._system.factorise_data(self._data) if factor is None else factor
 
     def _checked(self, v: FloatArray) -> Eigenpair:
         """Eigenpair of a vector of unit mass, by its Rayleigh quotient."""

@@ -68,12 +68,8 @@ class System:
         cols = np.broadcast_to(high[:, None, None] * self.n_dim + axis[None, :], shape)
         return rows.ravel(), cols.ravel()
 
-    def factorise(self, evaluations: Sequence[Evaluation], candidates: Callable[[], IntArray]) -> Factor:
-        """Factor of the summed Hessian; ``candidates`` gives couplings where the pattern is too small."""
-        return self.factorise_data(self.assemble(evaluations, candidates))
-
     def assemble(self, evaluations: Sequence[Evaluation], candidates: Callable[[], IntArray]) -> FloatArray:
-        """Values of the summed Hessian on the pattern; ``candidates`` as in `factorise`."""
+        """Values of the summed Hessian on the pattern; ``candidates`` gives couplings it lacks."""
         hessians = [e.hessian for e in evaluations if e.hessian is not None]
         if not all(self.pattern.holds(h.pattern) for h in hessians):
             needed = np.concatenate(
@@ -87,9 +83,14 @@ class System:
         return data
 
     def factorise_data(self, data: FloatArray) -> Factor:
-        """Factor of a matrix given by its values on the pattern."""
+        """Factor, with its inertia, of a matrix given by its values on the pattern."""
         self.factorizations += 1
         return self.solver.factorise(data)
+
+    def factorise_definite(self, data: FloatArray) -> Factor | None:
+        """Factor where no pivot is found negative, else None; see `LinearSolver`."""
+        self.factorizations += 1
+        return self.solver.factorise_definite(data)
 
 
 def _pairs(pattern: Pattern, n_dim: int) -> IntArray:

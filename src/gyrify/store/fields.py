@@ -205,7 +205,7 @@ class StateFields:
         b33, b12 = f33**2, F[0, 0] * F[1, 0] + F[0, 1] * F[1, 1]
         pressure = problem.volumetric_pressure(self._state, self._time)
         kappa = problem.kappa if pressure is None else np.zeros_like(problem.kappa)
-        W_1, W_J, *_ = derivatives.py_func(b11 + b22 + b33, self._J_e, problem.mu, kappa)
+        W_1, W_J, *_ = derivatives.py_func(b11 + b22 + b33, self._J_e, np.cbrt(self._J_e), problem.mu, kappa)
         W_J += 0.0 if pressure is None else pressure
         factor = 2.0 * W_1 / self._J_e
         return factor * b11 + W_J, factor * b22 + W_J, factor * b33 + W_J, factor * b12

@@ -1,0 +1,217 @@
+"""Compiled arithmetic of a batch of integration points, the last axis of every array.
+
+Inner loops run over the points of the batch, so that the compiler makes vector instructions of them; what is
+given for all points is indexed by the batch's first one. As in
+`gyrify.energy.cell` dimension and number of nodes are arguments for which the callers pass constants. The
+cell matrix needs no tangent tensor: with h_a = H g_a and f_a = F g_a of the shape-function gradients g_a,
+every term of `gyrify.physics.isotropic` becomes a product of nodal vectors. Only where a projection is asked
+for is the tangent formed as a matrix.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from gyrify.energy.projection import project_to_psd
+from gyrify.physics.isotropic import coefficients
+from gyrify.physics.neo_hookean import density
+
+# The functions below write into their last arguments; numba compiles them without annotations.
+# mypy: disable-error-code="no-untyped-def"
+
+# Points of a batch: enough for long loops, few enough to stay in the first cache.
+LANES = 64
+
+
+@njit(cache=True, inline="always")
+def gather(n_dim, n_nodes, first, n, u, cells, x):
+    """Rows of ``u`` at the nodes of ``n`` points from ``first``."""
+    for l in range(n):
+        for a in range(n_nodes):
+            for i in range(n_dim):
+                x[a, i, l] = u[cells[first + l, a], i]
+
+
+@njit(cache=True, inline="always")
+def load(n_dim, first, n, matrices, M):
+    """Matrices of ``n`` points from ``first``."""
+    for i in range(n_dim):
+        for j in range(n_dim):
+            for l in range(n):
+                M[i, j, l] = matrices[i, j, first + l]
+
+
+@njit(cache=True, inline="always")
+def add_products(n_dim, n_nodes, first, n, x, g, F):
+    """Add sum_a x_a (x) g_a."""
+    for i in range(n_dim):
+        for j in range(n_dim):
+            for a in range(n_nodes):
+                for l in range(n):
+                    F[i, j, l] += x[a, i, l] * g[a, j, first + l]
+
+
+@njit(cache=True, inline="always", error_model="numpy")
+def invert(n_dim, n, F, H, det):
+    """H = F^{-T} and det F; the smallest det F."""
+    smallest = np.inf
+    for l in range(n):
+        if n_dim == 2:
+            det[l] = F[0, 0, l] * F[1, 1, l] - F[0, 1, l] * F[1, 0, l]
+            H[0, 0, l], H[0, 1, l] = F[1, 1, l] / det[l], -F[1, 0, l] / det[l]
+            H[1, 0, l], H[1, 1, l] = -F[0, 1, l] / det[l], F[0, 0, l] / det[l]
+        else:
+            for i in range(3):
+                a, b = (i + 1) % 3, (i + 2) % 3
+                for j in range(3):
+                    c, d = (j + 1) % 3, (j + 2) % 3
+                    H[i, j, l] = F[a, c, l] * F[b, d, l] - F[a, d, l] * F[b, c, l]
+            det[l] = F[0, 0, l] * H[0, 0, l] + F[0, 1, l] * H[0, 1, l] + F[0, 2, l] * H[0, 2, l]
+            for i in range(3):
+                for j in range(3):
+                    H[i, j, l] /= det[l]
+        # a comparison that is false for NaN, which must not pass for a volume
+        if not det[l] >= smallest:
+            smallest = det[l]
+    return smallest
+
+
+@njit(cache=True, inline="always")
+def step_to_inversion(n, F, D, steps):
+    """Smallest positive root of det(F + s D) = 0 in the plane of each point, or 1; the smallest of all."""
+    for l in range(n):
+        p = D[0, 0, l] * D[1, 1, l] - D[0, 1, l] * D[1, 0, l]
+        q = (
+            F[0, 0, l] * D[1, 1, l]
+            + F[1, 1, l] * D[0, 0, l]
+            - F[0, 1, l] * D[1, 0, l]
+            - F[1, 0, l] * D[0, 1, l]
+        )
+        r = F[0, 0, l] * F[1, 1, l] - F[0, 1, l] * F[1, 0, l]
+        # 2 r / (sqrt - q) is the smallest positive root for every sign of p, without cancellation
+        below = np.sqrt(max(q * q - 4.0 * p * r, 0.0)) - q
+        has_root = q * q >= 4.0 * p * r and below > 0.0
+        steps[l] = 2.0 * r / below if has_root else 1.0
+    smallest = 1.0
+    for l in range(n):
+        smallest = min(smallest, steps[l])
+    return smallest
+
+
+@njit(cache=True, inline="always")
+def invariants(n_dim, first, n, F, det, f33, I1, J, root):
+    """I1 = tr F F^T, J = det F with the out-of-plane stretch, and its cube root."""
+    for l in range(n):
+        J[l], I1[l] = det[l] * f33[first + l], f33[first + l] * f33[first + l] if n_dim == 2 else 0.0
+        for i in range(n_dim):
+            for j in range(n_dim):
+                I1[l] += F[i, j, l] * F[i, j, l]
+    for l in range(n):
+        root[l] = np.cbrt(J[l])
+
+
+@njit(cache=True, inline="always")
+def energy(first, n, I1, J, root, mu, kappa, weight, entries):
+    """Sum of w W."""
+    for l in range(n):
+        c = first + l
+        entries[l] = weight[c] * density(I1[l], J[l], root[l], mu[c], kappa[c])
+    total = 0.0
+    for l in range(n):
+        total += entries[l]
+    return total
+
+
+@njit(cache=True, inline="always")
+def weigh_moduli(first, n, I1, J, root, mu, kappa, pressure, weight, moduli):
+    """w times a, b, c, d, e of `gyrify.physics.isotropic`."""
+    for l in range(n):
+        c, w = first + l, weight[first + l]
+        a_, b_, c_, d_, e_ = coefficients(I1[l], J[l], root[l], mu[c], kappa[c], pressure[c])
+        moduli[0, l], moduli[1, l], moduli[2, l] = w * a_, w * b_, w * c_
+        moduli[3, l], moduli[4, l] = w * d_, w * e_
+
+
+@njit(cache=True, inline="always")
+def nodal_vectors(n_dim, n_nodes, first, n, F, H, g, f, h):
+    """f_a = F g_a and h_a = H g_a."""
+    for a in range(n_nodes):
+        for i in range(n_dim):
+            for l in range(n):
+                along_F, along_H = 0.0, 0.0
+                for j in range(n_dim):
+                    along_F += F[i, j, l] * g[a, j, first + l]
+                    along_H += H[i, j, l] * g[a, j, first + l]
+                f[a, i, l], h[a, i, l] = along_F, along_H
+
+
+@njit(cache=True, inline="always")
+def add_forces(n_dim, n_nodes, first, n, f, h, moduli, cells, gradient):
+    """Add w P g_a to each node's force."""
+    for a in range(n_nodes):
+        for i in range(n_dim):
+            for l in range(n):
+                gradient[cells[first + l, a], i] += moduli[0, l] * f[a, i, l] + moduli[1, l] * h[a, i, l]
+
+
+@njit(cache=True, inline="always")
+def add_matrices(n_dim, n_nodes, first, n, f, h, g, moduli, position, entries, values):
+    """Add the exact cell matrices, their upper triangles in the order of numpy.triu_indices."""
+    entry = 0
+    for a in range(n_nodes):
+        for i in range(n_dim):
+            for b in range(a, n_nodes):
+                for k in range(i if b == a else 0, n_dim):
+                    for l in range(n):
+                        total = (
+                            moduli[2, l] * h[a, i, l] * h[b, k, l]
+                            - moduli[1, l] * h[b, i, l] * h[a, k, l]
+                            + moduli[3, l] * f[a, i, l] * f[b, k, l]
+                            + moduli[4, l] * (f[a, i, l] * h[b, k, l] + h[a, i, l] * f[b, k, l])
+                        )
+                        if i == k:
+                            for j in range(n_dim):
+                                total += moduli[0, l] * g[a, j, first + l] * g[b, j, first + l]
+                        entries[l] = total
+                    for l in range(n):
+                        values[position[first + l, entry]] += entries[l]
+                    entry += 1
+
+
+@njit(cache=True)
+def add_projected(n_dim, n_nodes, first, n, F, H, g, moduli, position, values):
+    """Add the cell matrices of the tangents without their negative eigenvalues."""
+    C = np.empty((n_dim * n_dim, n_dim * n_dim))
+    for l in range(n):
+        tangent(n_dim, l, F, H, moduli, C)
+        project_to_psd(C)
+        entry = 0
+        for a in range(n_nodes):
+            for i in range(n_dim):
+                for b in range(a, n_nodes):
+                    for k in range(i if b == a else 0, n_dim):
+                        total = 0.0
+                        for j in range(n_dim):
+                            for m in range(n_dim):
+                                total += (
+                                    g[a, j, first + l] * C[i * n_dim + j, k * n_dim + m] * g[b, m, first + l]
+                                )
+                        values[position[first + l, entry]] += total
+                        entry += 1
+
+
+@njit(cache=True)
+def tangent(n_dim, l, F, H, moduli, C):
+    """Weighed tangent of one point as a matrix over (i, j), (k, m)."""
+    for i in range(n_dim):
+        for j in range(n_dim):
+            for k in range(n_dim):
+                for m in range(n_dim):
+                    C[i * n_dim + j, k * n_dim + m] = (
+                        moduli[2, l] * H[i, j, l] * H[k, m, l]
+                        - moduli[1, l] * H[i, m, l] * H[k, j, l]
+                        + moduli[3, l] * F[i, j, l] * F[k, m, l]
+                        + moduli[4, l] * (F[i, j, l] * H[k, m, l] + H[i, j, l] * F[k, m, l])
+                    )
+            C[i * n_dim + j, i * n_dim + j] += moduli[0, l]
