@@ -73,7 +73,8 @@ class Book:
             raise GyrifyError(
                 f"A worker computes with solver version {outcome.solver_version}, this process with "
                 f"{solver_version()}.",
-                "Install the same gyrify and libraries wherever points are computed.",
+                "Install the same gyrify and libraries wherever points are computed; where the source has "
+                "changed since the study began, run it again.",
             )
         point = self.by_hash[outcome.config.config_hash]
         record = Record(
