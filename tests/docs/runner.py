@@ -112,5 +112,5 @@ class Runner:
 def _environment() -> dict[str, str]:
     """The environment of the tests, with its programs first and nothing that looks at a screen."""
     programs = str(Path(sys.executable).parent)
-    quiet = {"OMP_NUM_THREADS": "1", "MPLBACKEND": "agg", "PYVISTA_OFF_SCREEN": "true", "COLUMNS": "120"}
+    quiet = {"OMP_NUM_THREADS": "1", "MPLBACKEND": "agg", "PYVISTA_OFF_SCREEN": "true", "COLUMNS": "160"}
     return {**os.environ, **quiet, "PATH": os.pathsep.join([programs, os.environ["PATH"]])}
