@@ -63,7 +63,7 @@ class Runner:
             text=True,
             timeout=_TIME_LIMIT,
         )
-        self._printed, self._stdout = done.stdout + done.stderr, done.stdout
+        self._printed, self._stdout = done.stderr + done.stdout, done.stdout  # progress comes first
         expected = int(block.value("exits") or 0)
         assert done.returncode == expected, f"{block.place} exits {done.returncode}: {done.stderr[-2000:]}"
 
