@@ -59,7 +59,7 @@ class ElasticEnergy:
         self.kinematics = kinematics
         self.mu, self.kappa, self.weight = mu, kappa, weight
         self.pattern = pattern
-        n_nodes, n_dim, _ = kinematics.gradient_lanes.shape
+        _, n_nodes, n_dim = kinematics.gradients.shape
         self._kernels: ElasticKernels = elastic_kernels(n_dim, n_nodes)
 
     def evaluate(self, u: FloatArray, order: int, project_psd: bool = False) -> Evaluation:
@@ -73,7 +73,7 @@ class ElasticEnergy:
         k = self.kinematics
         gradient = np.zeros_like(u) if order >= 1 else np.empty((0, u.shape[1]))
         values = np.zeros(self.pattern.pattern.rows.size if order >= 2 else 0)
-        cells = (k.cells, k.base_lanes, k.gradient_lanes, k.f33, self.mu, kappa, pressure, self.weight)
+        cells = (k.cells, k.base, k.gradients, k.f33, self.mu, kappa, pressure, self.weight)
         value = self._kernels.accumulate(
             u, *cells, order, project_psd, self.pattern.position, gradient, values
         )
@@ -85,4 +85,4 @@ class ElasticEnergy:
     def max_step(self, u: FloatArray, du: FloatArray) -> float:
         """Largest fraction of du, at most 1, before a cell is inverted."""
         k = self.kinematics
-        return float(self._kernels.largest_step(u, du, k.cells, k.base_lanes, k.gradient_lanes))
+        return float(self._kernels.largest_step(u, du, k.cells, k.base, k.gradients))

@@ -80,7 +80,7 @@ def _accumulate(n_dim: int, n_nodes: int, digest: int) -> Any:
         values,
     ):
         """Add every point's energy, forces and matrix; infinite as soon as one is inverted."""
-        x = np.empty((n_nodes, n_dim, LANES))
+        x, g = np.empty((n_nodes, n_dim, LANES)), np.empty((n_nodes, n_dim, LANES))
         F, H = np.empty((n_dim, n_dim, LANES)), np.empty((n_dim + 0 * digest, n_dim, LANES))
         f, h = np.empty((n_nodes, n_dim, LANES)), np.empty((n_nodes, n_dim, LANES))
         det, I1, J, root = np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES)
@@ -89,8 +89,9 @@ def _accumulate(n_dim: int, n_nodes: int, digest: int) -> Any:
         for first in range(0, cells.shape[0], LANES):
             n = min(LANES, cells.shape[0] - first)
             gather(n_dim, n_nodes, first, n, u, cells, x)
-            load(n_dim, first, n, base, F)
-            add_products(n_dim, n_nodes, first, n, x, gradients, F)
+            load(n_nodes, n_dim, first, n, gradients, g)
+            load(n_dim, n_dim, first, n, base, F)
+            add_products(n_dim, n_nodes, n, x, g, F)
             if not invert_all(n_dim, n, F, H, det) > 0.0:
                 return np.inf
             invariants(n_dim, first, n, F, det, f33, I1, J, root)
@@ -98,12 +99,12 @@ def _accumulate(n_dim: int, n_nodes: int, digest: int) -> Any:
             if order == 0:
                 continue
             weigh_moduli(first, n, I1, J, root, mu, kappa, pressure, weight, moduli)
-            nodal_vectors(n_dim, n_nodes, first, n, F, H, gradients, f, h)
+            nodal_vectors(n_dim, n_nodes, n, F, H, g, f, h)
             add_forces(n_dim, n_nodes, first, n, f, h, moduli, cells, gradient)
             if order == 2 and project_psd:
-                add_projected(n_dim, n_nodes, first, n, F, H, gradients, moduli, position, values)
+                add_projected(n_dim, n_nodes, first, n, F, H, g, moduli, position, values)
             elif order == 2:
-                add_matrices(n_dim, n_nodes, first, n, f, h, gradients, moduli, position, entries, values)
+                add_matrices(n_dim, n_nodes, first, n, f, h, g, moduli, position, entries, values)
         return value
 
     return accumulate
@@ -117,18 +118,19 @@ def _largest_step(n_dim: int, n_nodes: int, digest: int) -> Any:
         In the plane the determinant is a quadratic in s with an exact root; in space the step is halved
         until nothing is inverted at its end.
         """
-        x = np.empty((n_nodes, n_dim, LANES))
+        x, g = np.empty((n_nodes, n_dim, LANES)), np.empty((n_nodes, n_dim, LANES))
         F, D = np.empty((n_dim + 0 * digest, n_dim, LANES)), np.empty((n_dim, n_dim, LANES))
         H, scratch = np.empty((n_dim, n_dim, LANES)), np.empty(LANES)
         largest = 1.0
         for first in range(0, cells.shape[0], LANES):
             n = min(LANES, cells.shape[0] - first)
             gather(n_dim, n_nodes, first, n, u, cells, x)
-            load(n_dim, first, n, base, F)
-            add_products(n_dim, n_nodes, first, n, x, gradients, F)
+            load(n_nodes, n_dim, first, n, gradients, g)
+            load(n_dim, n_dim, first, n, base, F)
+            add_products(n_dim, n_nodes, n, x, g, F)
             gather(n_dim, n_nodes, first, n, du, cells, x)
             D[:] = 0.0
-            add_products(n_dim, n_nodes, first, n, x, gradients, D)
+            add_products(n_dim, n_nodes, n, x, g, D)
             if n_dim == 2:
                 largest = min(largest, step_to_inversion(n, F, D, scratch))
             else:
@@ -148,14 +150,12 @@ def _grow(n_dim: int, n_nodes: int, digest: int) -> Any:
             det[c] = invert(n_dim, F_g[c], H)
             for i in range(n_dim):
                 for j in range(n_dim):
-                    base[i, j, c] = H[j, i]
-        for a in range(n_nodes):
-            for j in range(n_dim):
-                for c in range(F_g.shape[0]):
-                    grown[a, j, c] = 0.0
-                for i in range(n_dim):
-                    for c in range(F_g.shape[0]):
-                        grown[a, j, c] += gradients[a, i, c] * base[i, j, c]
+                    base[c, i, j] = H[j, i]
+            for a in range(n_nodes):
+                for j in range(n_dim):
+                    grown[c, a, j] = 0.0
+                    for i in range(n_dim):
+                        grown[c, a, j] += gradients[c, a, i] * base[c, i, j]
 
     return grow
 

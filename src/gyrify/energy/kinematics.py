@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -55,11 +54,6 @@ class Simplices:
             n_points=n_points,
         )
 
-    @cached_property
-    def gradient_lanes(self) -> FloatArray:
-        """(n_nodes, n_dim, n) gradients with the point as the last axis."""
-        return np.ascontiguousarray(np.moveaxis(self.gradients, 0, -1))
-
     @property
     def lumped_volumes(self) -> FloatArray:
         """(n_points,) share of the reference volume of each point of the mesh [mm^2].
@@ -100,11 +94,10 @@ class ElasticKinematics:
     ----------
     cells : (n_cells, n_nodes) int array
         Point indices.
-    base_lanes : (n_dim, n_dim, n_cells) float array
+    base : (n_cells, n_dim, n_dim) float array
         F_g^{-1} in the plane: the elastic deformation of the undisplaced, grown cell.
-    gradient_lanes : (n_nodes, n_dim, n_cells) float array
-        Shape-function gradients with respect to the grown configuration [1/mm]; as in ``base_lanes`` the cell
-        is the last axis, along which the kernels are vectorised.
+    gradients : (n_cells, n_nodes, n_dim) float array
+        Shape-function gradients with respect to the grown configuration [1/mm].
     f33 : (n_cells,) float array
         Out-of-plane elastic stretch F33 / F_g,33; ones in three dimensions.
     J_g : (n_cells,) float array
@@ -116,8 +109,8 @@ class ElasticKinematics:
     """
 
     cells: IntArray
-    base_lanes: FloatArray
-    gradient_lanes: FloatArray
+    base: FloatArray
+    gradients: FloatArray
     f33: FloatArray
     J_g: FloatArray
     volumes: FloatArray
@@ -139,28 +132,17 @@ class ElasticKinematics:
             Total out-of-plane stretch, 1 in plane strain.
         """
         n_cells, n_nodes, n_dim = simplices.gradients.shape
-        base, det = np.empty((n_dim, n_dim, n_cells)), np.empty(n_cells)
-        gradients = np.empty((n_nodes, n_dim, n_cells))
-        elastic_kernels(n_dim, n_nodes).grow(F_g, simplices.gradient_lanes, base, gradients, det)
+        base, gradients, det = np.empty_like(F_g), np.empty_like(simplices.gradients), np.empty(n_cells)
+        elastic_kernels(n_dim, n_nodes).grow(F_g, simplices.gradients, base, gradients, det)
         return ElasticKinematics(
             cells=simplices.cells,
-            base_lanes=base,
-            gradient_lanes=gradients,
+            base=base,
+            gradients=gradients,
             f33=F33 / F_g33,
             J_g=det * F_g33,
             volumes=simplices.volumes,
             n_points=simplices.n_points,
         )
-
-    @property
-    def base(self) -> FloatArray:
-        """(n_cells, n_dim, n_dim) F_g^{-1} in the plane."""
-        return np.moveaxis(self.base_lanes, -1, 0)
-
-    @property
-    def gradients(self) -> FloatArray:
-        """(n_cells, n_nodes, n_dim) gradients of the shape functions [1/mm]."""
-        return np.moveaxis(self.gradient_lanes, -1, 0)
 
     def deformation(self, u: FloatArray) -> FloatArray:
         """(n_cells, n_dim, n_dim) elastic deformation gradients in the plane of a state u [mm]."""

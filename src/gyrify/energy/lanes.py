@@ -1,7 +1,6 @@
 """Compiled arithmetic of a batch of integration points, the last axis of every array.
 
-Inner loops run over the points of the batch, so that the compiler makes vector instructions of them; what is
-given for all points is indexed by the batch's first one. As in
+Inner loops run over the points of the batch, so that the compiler makes vector instructions of them. As in
 `gyrify.energy.cell` dimension and number of nodes are arguments for which the callers pass constants. The
 cell matrix needs no tangent tensor: with h_a = H g_a and f_a = F g_a of the shape-function gradients g_a,
 every term of `gyrify.physics.isotropic` becomes a product of nodal vectors. Only where a projection is asked
@@ -34,22 +33,22 @@ def gather(n_dim, n_nodes, first, n, u, cells, x):
 
 
 @njit(cache=True, inline="always")
-def load(n_dim, first, n, matrices, M):
-    """Matrices of ``n`` points from ``first``."""
-    for i in range(n_dim):
-        for j in range(n_dim):
-            for l in range(n):
-                M[i, j, l] = matrices[i, j, first + l]
+def load(n_rows, n_columns, first, n, matrices, M):
+    """Matrices of ``n`` points from ``first``, given with the point as the first axis."""
+    for l in range(n):
+        for i in range(n_rows):
+            for j in range(n_columns):
+                M[i, j, l] = matrices[first + l, i, j]
 
 
 @njit(cache=True, inline="always")
-def add_products(n_dim, n_nodes, first, n, x, g, F):
+def add_products(n_dim, n_nodes, n, x, g, F):
     """Add sum_a x_a (x) g_a."""
     for i in range(n_dim):
         for j in range(n_dim):
             for a in range(n_nodes):
                 for l in range(n):
-                    F[i, j, l] += x[a, i, l] * g[a, j, first + l]
+                    F[i, j, l] += x[a, i, l] * g[a, j, l]
 
 
 @njit(cache=True, inline="always", error_model="numpy")
@@ -134,15 +133,15 @@ def weigh_moduli(first, n, I1, J, root, mu, kappa, pressure, weight, moduli):
 
 
 @njit(cache=True, inline="always")
-def nodal_vectors(n_dim, n_nodes, first, n, F, H, g, f, h):
+def nodal_vectors(n_dim, n_nodes, n, F, H, g, f, h):
     """f_a = F g_a and h_a = H g_a."""
     for a in range(n_nodes):
         for i in range(n_dim):
             for l in range(n):
                 along_F, along_H = 0.0, 0.0
                 for j in range(n_dim):
-                    along_F += F[i, j, l] * g[a, j, first + l]
-                    along_H += H[i, j, l] * g[a, j, first + l]
+                    along_F += F[i, j, l] * g[a, j, l]
+                    along_H += H[i, j, l] * g[a, j, l]
                 f[a, i, l], h[a, i, l] = along_F, along_H
 
 
@@ -172,7 +171,7 @@ def add_matrices(n_dim, n_nodes, first, n, f, h, g, moduli, position, entries, v
                         )
                         if i == k:
                             for j in range(n_dim):
-                                total += moduli[0, l] * g[a, j, first + l] * g[b, j, first + l]
+                                total += moduli[0, l] * g[a, j, l] * g[b, j, l]
                         entries[l] = total
                     for l in range(n):
                         values[position[first + l, entry]] += entries[l]
@@ -194,9 +193,7 @@ def add_projected(n_dim, n_nodes, first, n, F, H, g, moduli, position, values):
                         total = 0.0
                         for j in range(n_dim):
                             for m in range(n_dim):
-                                total += (
-                                    g[a, j, first + l] * C[i * n_dim + j, k * n_dim + m] * g[b, m, first + l]
-                                )
+                                total += g[a, j, l] * C[i * n_dim + j, k * n_dim + m] * g[b, m, l]
                         values[position[first + l, entry]] += total
                         entry += 1
 
