@@ -22,6 +22,7 @@ RUN_FILES: Final = (
     "summary.json",
     "folded.png",
     "onset.png",
+    "report.html",
 )
 
 
