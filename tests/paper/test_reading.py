@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from statistics import fmean, stdev
 
 import pytest
@@ -12,13 +13,21 @@ from gyrify.errors import ConfigError
 from gyrify.paper import Case, all_cases
 from gyrify.paper.cases import EQUAL, SOFT
 from gyrify.paper.ensemble import SEEDS, repeat, spread
-from gyrify.paper.reading import Mechanics, Reading, grid, point_of, require_gi
+from gyrify.paper.reading import Mechanics, Reading, grid, point_of, require_gi, variants
 from gyrify.paper.reproduce import reproduce
 
 
 def test_the_grid_has_every_combination_once() -> None:
-    assert len(grid()) == len(set(grid())) == 3 * 2 * 2 * 10
+    assert len(grid()) == len(set(grid())) == 3 * 2 * 2 * 5
     assert {one.element for one in grid("quadratic")} == {"quadratic"}
+
+
+def test_variants_change_the_element_or_the_number_and_nothing_else() -> None:
+    found = variants(Mechanics(number=0.13))
+    assert {one.element for one in found if one.number == 0.13} == {"quadratic", "mean_dilatation"}
+    assert {one.number for one in found if one.element == "linear"} == {0.013, 0.4, 2.6}
+    assert not set(found) & set(grid())
+    assert {replace(one, element="linear", number=0.13) for one in found} == {Mechanics(number=0.13)}
 
 
 def test_a_mechanics_is_read_from_a_configuration_and_written_back() -> None:

@@ -131,6 +131,10 @@ def test_elements_are_tried_for_the_best(monkeypatch: pytest.MonkeyPatch) -> Non
     found = screen(FakeBench(), BASE)
     elements = [c.mechanics.element for c in found.candidates]
     assert {elements.count(element) for element in ELEMENTS[1:]} == {4}
+    screened = {one.number for one in grid()}
+    assert {c.mechanics.number for c in found.candidates} > screened & {
+        c.mechanics.number for c in found.candidates
+    }
     assert found.is_complete
 
 

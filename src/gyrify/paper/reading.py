@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Final
 
@@ -16,11 +16,9 @@ OUT_OF_PLANE: Final = ("blocked", "none", "generalised")
 STRETCH: Final = ("linear", "exponential")
 ENERGY_PER: Final = ("grown", "reference")
 ELEMENTS: Final = ("linear", "quadratic", "mean_dilatation")
-DISSIPATION: Final = (
-    *(("drag", number) for number in (0.013, 0.13, 0.4, 1.3, 2.6, 5.0)),
-    *(("kelvin_voigt", number) for number in (0.01, 0.1, 1.0)),
-    ("none", 0.0),
-)
+DISSIPATION: Final = (("drag", 0.13), ("drag", 1.3), ("drag", 5.0), ("kelvin_voigt", 0.1), ("none", 0.0))
+# Numbers between and beside those, for the readings that are best with them.
+FINER: Final = {"drag": (0.013, 0.4, 2.6), "kelvin_voigt": (0.01, 1.0), "none": ()}
 # Stability is located by a threshold of its own, and costs a quarter of a run.
 _PLAIN: Final = {"stability.detect": False, "stability.follow_branch": False}
 
@@ -148,6 +146,14 @@ def grid(element: str = "linear") -> list[Mechanics]:
     """All combinations of the axes with one element."""
     axes = product(OUT_OF_PLANE, STRETCH, ENERGY_PER, DISSIPATION)
     return [Mechanics(plane, stretch, per, kind, c, element) for plane, stretch, per, (kind, c) in axes]
+
+
+def variants(mechanics: Mechanics) -> list[Mechanics]:
+    """The same with the other elements, and with other numbers of its dissipation."""
+    return [
+        *(replace(mechanics, element=element) for element in ELEMENTS if element != mechanics.element),
+        *(replace(mechanics, number=number) for number in FINER[mechanics.dissipation]),
+    ]
 
 
 def require_gi(word: str) -> GiDefinition:

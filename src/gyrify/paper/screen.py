@@ -10,20 +10,20 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
 from gyrify.config import Config
 from gyrify.paper.bench import Bench
 from gyrify.paper.candidate import Candidate
-from gyrify.paper.reading import ELEMENTS, grid
+from gyrify.paper.reading import grid, variants
 from gyrify.study import Point
 
 BEST: Final = 3
-# Mechanics that are tried with the other elements too.
+# Mechanics that are tried with the other elements and finer steps of dissipation too.
 _REFINED: Final = 4
 # Runs per batch and worker: enough to keep all at work, few enough to learn from.
-_BATCH: Final = 4
+_BATCH: Final = 8
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,8 @@ def screen(
 ) -> Screening:
     """Rank readings by the number of observations that hold at once.
 
-    All mechanics are screened with linear triangles, the paper's; the best of them with the other elements.
+    All mechanics are screened with linear triangles, the paper's, and coarse steps of dissipation; the best of
+    them with the other elements and with the steps between.
 
     Parameters
     ----------
@@ -105,9 +106,7 @@ def screen(
     live = _search(bench, pool, until, tell)
     if not live and not given:
         best = ranked(pool)[:_REFINED]
-        others = [
-            replace(c.mechanics, element=element) for c in best for element in ELEMENTS if element != "linear"
-        ]
+        others = dict.fromkeys(other for c in best for other in variants(c.mechanics))
         pool += [Candidate(base, mechanics, seed) for mechanics in others]
         live = _search(bench, pool, until, tell)
     return Screening(tuple(ranked(pool)), not live, len(live))
