@@ -79,8 +79,8 @@ def screen(
 ) -> Screening:
     """Rank readings by the number of observations that hold at once.
 
-    All mechanics are screened with linear triangles, the paper's, and coarse steps of dissipation; the best of
-    them with the other elements and with the steps between.
+    All mechanics are screened with linear triangles, the paper's, and coarse steps of dissipation; the best
+    with the other elements and with the steps between.
 
     Parameters
     ----------
