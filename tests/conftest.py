@@ -8,27 +8,11 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 import pytest
+from slices import FOLDING, TINY
 
 from gyrify.config import Config
 from gyrify.simulation import simulate
 from gyrify.store import History
-
-# A slice that is cheap and still folds until its sulci close; few iterations, so that increments are halved.
-FOLDING = {
-    "mesh.n_around": 168,
-    "mesh.n_layers": 8,
-    "mesh.n_cortex_layers": 4,
-    "growth.duration": 650.0,
-    "solver.increments": 20,
-    "solver.max_newton": 12,
-}
-# A slice for runs that only have to run.
-TINY = {
-    "mesh.n_around": 48,
-    "mesh.n_layers": 6,
-    "mesh.n_cortex_layers": 2,
-    "solver.increments": 8,
-}
 
 
 @pytest.fixture

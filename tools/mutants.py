@@ -38,6 +38,7 @@ COMPILED = (
     "physics/isotropic.py",
     "energy/kernels.py",
     "energy/cell.py",
+    "energy/lanes.py",
     "energy/projection.py",
 )
 

@@ -69,7 +69,10 @@ def test_json_is_one_document_with_the_numbers(folder: Path, capsys: Capture) ->
     assert found["columns"][:2] == ["key", "config_hash"]
 
 
-def test_for_reading_it_shows_what_matters(folder: Path, capsys: Capture) -> None:
+def test_for_reading_it_shows_what_matters(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("COLUMNS", raising=False)
     code, printed, _ = table(folder, capsys)
     assert code == 0
     for word in ("growth.ratio", "material.stiffness_ratio", "phenotype", "gi_closing", "failed", "5 runs"):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import FOLDING
+from slices import FOLDING
 
 from gyrify.config import Config
 from gyrify.errors import ConfigError, SolveError
