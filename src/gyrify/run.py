@@ -94,11 +94,11 @@ class Run:
         HistoryError
             If the disk is full.
         """
-        self.problem.compile()
         self.journal.set_meta(
             status="running", reason="", advice="", stable="", linear_solver=self._linear_solver()
         )
         try:
+            self.problem.compile()  # memory may run out even here
             self._accept(tuple(observers), watch)
             self.journal.set_meta(status="completed", stable="true" if self._is_stable() else "false")
         except LimitReachedError as limit:

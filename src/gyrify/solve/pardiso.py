@@ -21,7 +21,7 @@ from gyrify.solve.types import FloatArray, IntArray
 
 _DEFINITE, _INDEFINITE = 2, -2
 _ANALYSE, _FACTORISE, _SOLVE, _RELEASE = 11, 22, 33, -1
-_NOT_DEFINITE = -4
+_NO_MEMORY, _NOT_DEFINITE = -2, -4
 _SEQUENTIAL, _CBWR_AUTO = 1, 2
 
 
@@ -146,6 +146,8 @@ class _Matrices:
         )
         if error.value == _NOT_DEFINITE:
             raise NotDefiniteError("A pivot of the stiffness matrix is not positive.")
+        if error.value == _NO_MEMORY:  # no fault of the matrix, as a SolveError would say
+            raise MemoryError(f"PARDISO found no memory in phase {phase}.")
         if error.value != 0:
             raise SolveError(f"PARDISO failed in phase {phase} with error {error.value}.")
         return solution
