@@ -80,6 +80,11 @@ class Slice(Tissue):
         return 0 if self.is_conservative else STEPS
 
     @property
+    def may_jump(self) -> bool:
+        """See `gyrify.solve.quasistatic.Problem`: without dissipation tissue snaps from state to state."""
+        return self.is_conservative
+
+    @property
     def is_path_kept(self) -> bool:
         """See `gyrify.solve.quasistatic.Problem`: a bifurcation is to be seen, and nothing unfolds it."""
         stability, is_perfect = self.config.stability, self.config.mesh.node_jitter == 0.0

@@ -173,6 +173,7 @@ class Pull:
     shift_mass: np.ndarray | None = None
     old_steps: int = 0
     is_path_kept: bool = False
+    may_jump: bool = False
 
     def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:  # noqa: ARG002
         goal, dead = 10.0 * fraction, fraction > self.refuses_after

@@ -83,6 +83,11 @@ class Problem(Protocol):
         """Whether to stay on a branch of equilibria where it turns unstable, for `inspect` to see that."""
         ...
 
+    @property
+    def may_jump(self) -> bool:
+        """Whether the path of states may have jumps, which no increment is small enough to resolve."""
+        ...
+
     def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:
         """Total energy at a fraction of the growth duration, for an increment from a state."""
         ...
@@ -127,6 +132,10 @@ class Stepping:
     def smallest_span(self) -> float:
         """Smallest increment in ticks, a whole number of them at least."""
         return max(1.0, self.min_increment * self.end)
+
+    def is_smallest(self, span: int) -> bool:
+        """Whether half of an increment would be too small."""
+        return span // 2 < self.smallest_span
 
 
 def grow(
@@ -178,15 +187,17 @@ def _advance(
         work = work + solution.stats
         if solution.result is Result.CONVERGED:
             break
+        if solution.result is Result.CROSSING_PATH and problem.may_jump and stepping.is_smallest(span):
+            break  # each step of the descent was free of collisions
         work = replace(work, rejected=work.rejected + 1)
-        span //= 2
-        if span < stepping.smallest_span:
+        if stepping.is_smallest(span):
             time = state.position / stepping.end
             raise SolveError(
                 f"Growth stopped at {time:.4%} of the duration: {solution.result.message} "
                 f"(residual {solution.residual:.3g} Pa mm, wanted {stepping.criterion.force:.3g}).",
                 solution.result.advice,
             )
+        span //= 2
     position = state.position + span
     return State(
         index=state.index + 1,
