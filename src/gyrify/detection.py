@@ -20,9 +20,9 @@ from gyrify.solve.stability import Eigenpair, Onset, Tangent
 from gyrify.solve.system import System
 from gyrify.solve.types import FloatArray
 
-# With dissipation every so many increments are looked at, and the last; the first unstable one is then sought
-# among those between.
-EVERY = 10
+# With dissipation so many increments are looked at until the onset, evenly spaced, and half as many after it;
+# the first unstable one is then sought among those between.
+LOOKS = 20
 # Tolerance of the onset, as a fraction of its increment; first step along a mode over the cortical thickness.
 _ONSET_TOLERANCE = 1e-3
 _DEPARTURE = 0.2
@@ -73,7 +73,7 @@ class Detector:
         """
         self.n_negative = self.onset = None
         conservative, end = self.problem.is_conservative, after.position == self.stepping.end
-        if not (conservative or end or after.index % EVERY == 0):
+        if not (conservative or end or after.index % (self._spacing * (1 + self.found)) == 0):
             return after
         try:
             n_negative = self._look(before, after)
@@ -82,6 +82,11 @@ class Detector:
                 raise
             return after
         return self._leave(before, after) if conservative and n_negative > 0 else after
+
+    @property
+    def _spacing(self) -> int:
+        """Increments from one look to the next."""
+        return max(1, self.stepping.increments // LOOKS)
 
     def _look(self, before: State, after: State) -> int:
         """Count the negative pivots of an increment; locate the onset if it lies since the last look."""
@@ -98,7 +103,7 @@ class Detector:
     def _first_unstable(self, before: State, after: State) -> tuple[State, State]:
         """By bisection, neighbouring increments since the last look, stable and unstable, up to ``after``."""
         known = {before.index: before, after.index: after}
-        low = before.index if self.problem.is_conservative else (before.index // EVERY) * EVERY
+        low = before.index if self.problem.is_conservative else before.index // self._spacing * self._spacing
         high = after.index
 
         def state(index: int) -> State:

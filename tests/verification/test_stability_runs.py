@@ -39,9 +39,26 @@ def test_detection_leaves_a_run_as_it_is(folding: Config, folded: History) -> No
     assert without.stable == folded.stable
 
 
-def test_every_tenth_increment_and_the_last_are_looked_at(folded: History) -> None:
-    last = len(folded) - 1
-    assert sorted(folded.negative_pivots) == [k for k in range(1, last + 1) if k % 10 == 0 or k == last]
+def test_looks_are_evenly_spaced_and_half_as_many_after_onset(folded: History) -> None:
+    """20 increments: each is looked at until the onset, every second one after it, and the last."""
+    onset, last = folded.onset, len(folded) - 1
+    assert onset is not None
+    first = int(np.searchsorted(folded.growth_times, onset.growth_time))
+    expected = [k for k in range(1, last + 1) if k <= first or k % 2 == 0 or k == last]
+    assert sorted(folded.negative_pivots) == expected
+
+
+def test_onset_is_sought_between_looks(
+    folding: Config, folded: History, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With looks at every fifth increment only, bisection finds the same onset."""
+    monkeypatch.setattr("gyrify.detection.LOOKS", 4)
+    again = simulate(folding)
+    assert len(again.negative_pivots) < len(folded.negative_pivots)
+    assert again.onset is not None
+    assert folded.onset is not None
+    assert again.onset.growth_time == pytest.approx(folded.onset.growth_time, rel=1e-6)
+    assert again.onset.mode_number == folded.onset.mode_number
 
 
 def test_onset_lies_in_the_first_increment_that_ends_unstable(folded: History) -> None:
