@@ -105,13 +105,14 @@ class Journal:
                 f"There is no journal at {path}.", "Name a folder that `gyrify run` has written."
             )
         if path.stat().st_size == 0:
-            raise HistoryError(
-                f"The journal {path} is empty: the run ended before its first state was stored.", RERUN
-            )
+            raise _nothing_stored(path)
         with translated(str(path)):
             connection = connect(path, read_only)
             (application,) = connection.execute("PRAGMA application_id").fetchone()
             (version,) = connection.execute("PRAGMA user_version").fetchone()
+            (n_tables,) = connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
+        if not (application or n_tables):  # killed between the making of the file and of its tables
+            raise _nothing_stored(path)
         if application != _APPLICATION_ID:
             raise HistoryError(
                 f"{path} is not a gyrify journal.", "Name a folder that `gyrify run` has written."
@@ -256,6 +257,12 @@ class Journal:
         if not is_bytes or _digest(row[:9], row[10], row[11]) != row[12]:
             raise HistoryError(f"Increment {number} in {self.name} is damaged: its checksum differs.", RERUN)
         return row
+
+
+def _nothing_stored(path: Path) -> HistoryError:
+    return HistoryError(
+        f"The journal {path} is empty: the run ended before its first state was stored.", RERUN
+    )
 
 
 def _sealed(meta: dict[str, str]) -> dict[str, str]:
