@@ -25,6 +25,9 @@ __all__ = ["Slice", "build_mesh"]
 
 # Barrier stiffness over Young's modulus of the cortex: sulci then rest at about half the activation distance.
 AUTO_BARRIER = 0.1
+# Distance over the shortest edge within which points enter the sparsity pattern together: far enough that few
+# new symbolic analyses are needed, near enough that the factor stays sparse.
+REACH = 3.0
 
 
 class Slice(Tissue):
@@ -145,8 +148,8 @@ class Slice(Tissue):
         return System(self.free, int(np.prod(self.state_shape)), self.mesh.n_dim, pattern, solver, couplings)
 
     def candidates(self, u: FloatArray) -> IntArray:
-        """Point pairs of the contour closer than its shortest edge."""
-        return self.surface.couplings(u, 0.5 * self.surface.shortest_edge(u))
+        """Point pairs of the contour that contact may couple before long."""
+        return self.surface.couplings(u, REACH * self.surface.shortest_edge(u))
 
     def is_path_admissible(self, u: FloatArray, u_end: FloatArray) -> bool:
         """See `gyrify.solve.quasistatic.Problem`."""
