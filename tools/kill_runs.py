@@ -1,8 +1,8 @@
 """Kill runs at random moments, some of them inside a commit, and resume them until they are done.
 
-``python tools/kill_runs.py [--kills 20] [--commits 5] [--seed 0]`` prints a table and exits with 1 if an
-increment that was reported as accepted is lost, or a resumed run ends with another result than an
-uninterrupted one. Every run is a process of its own that dies by SIGKILL.
+``python tools/kill_runs.py [--kills 20] [--commits 5] [--seed 0] [--records FILE]`` prints a table and exits
+with 1 if an increment that was reported as accepted is lost, or a resumed run ends with another result than
+an uninterrupted one. Every run is a process of its own that dies by SIGKILL.
 
 A run that is to die in a commit arms a thread when SQLite begins to execute COMMIT, and is killed 0 to 100
 microseconds later. That it died inside is proven twice: a byte of shared memory, set as COMMIT begins and
@@ -27,13 +27,14 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 from gyrify import Config, History, Progress, resume, simulate
 from gyrify.cli import main as gyrify
+from gyrify.errors import HistoryError
 from gyrify.store import Journal
 
 CONFIG = {
@@ -66,10 +67,11 @@ def grow_and_die(folder: Path, shared: mmap.mmap, doom: Callable[[], None]) -> b
     if child == 0:
         with contextlib.suppress(BaseException):
             doom()
-            if (folder / "journal.sqlite").exists():
+            if numbers_stored(folder):
                 resume(folder, observers=[lambda progress: report(progress, shared)])
             else:
-                simulate(configuration(), folder, observers=[lambda progress: report(progress, shared)])
+                watch = [lambda progress: report(progress, shared)]
+                simulate(configuration(), folder, observers=watch, overwrite=True)
             os._exit(0)
         os._exit(1)
     status = os.waitpid(child, 0)[1]
@@ -158,21 +160,29 @@ def attempt(number: int, folder: Path, in_commit: bool, seconds: float, chance: 
             where = f"inside a commit, {torn} torn frames" if shared[IN_COMMIT] else "outside a commit"
             trial.deaths.append(where)
         trial.accepted = struct.unpack("<i", shared[ACCEPTED : ACCEPTED + 4])[0]
-        if journal.exists():
-            stored = set(History.load(folder).journal.column("number"))
-            trial.stored = len(stored) - 1
+        stored = numbers_stored(folder)
+        trial.stored = max(0, len(stored) - 1)
+        if stored or trial.accepted:
             trial.n_lost += len(set(range(trial.accepted + 1)) - stored)
-        elif trial.accepted:
-            trial.n_lost += trial.accepted
         in_commit = in_commit and not shared[IN_COMMIT]
     trial.result_hash = finish(folder)
     return trial
 
 
+def numbers_stored(folder: Path) -> set[int]:
+    """Increments that a folder holds; none where the run died before its journal was made."""
+    try:
+        return set(History.load(folder).journal.column("number"))
+    except HistoryError as nothing:
+        if "There is no journal" in nothing.message or "before its first state" in nothing.message:
+            return set()
+        raise
+
+
 def finish(folder: Path) -> str:
     """Resume by the command, and return the hash in the summary."""
-    if not (folder / "journal.sqlite").exists():
-        simulate(configuration(), folder)
+    if not numbers_stored(folder):
+        simulate(configuration(), folder, overwrite=True)
     said = io.StringIO()
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(io.StringIO()):
         code = gyrify(["resume", str(folder), "--json", "--quiet"])
@@ -188,6 +198,7 @@ def main() -> int:
     parser.add_argument("--kills", type=int, default=20, help="runs that are killed")
     parser.add_argument("--commits", type=int, default=5, help="runs among them that die inside a commit")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--records", type=Path, help="file to append one JSON line per run to")
     given = parser.parse_args()
     folder = Path(tempfile.mkdtemp(prefix="kill-runs-"))
     try:
@@ -203,6 +214,10 @@ def main() -> int:
             same = "yes" if trial.result_hash == expected else "NO"
             numbers = f"{trial.number:3d}  {trial.accepted:8d}  {trial.stored:6d}  {trial.n_lost:4d}"
             print(f"{numbers}  {same:11}  {'; '.join(trial.deaths)}", flush=True)
+            if given.records is not None:
+                line = {"route": "run", **asdict(trial), "same": trial.result_hash == expected}
+                with given.records.open("a", encoding="utf-8") as file:
+                    file.write(json.dumps(line) + "\n")
         return summarise(trials, expected)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
