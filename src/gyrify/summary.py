@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from gyrify.metrics import Measures, measure
+from gyrify.store.files import fresh
 from gyrify.store.history import History
 
 
@@ -181,7 +182,7 @@ def warnings(summary: dict[str, Any]) -> list[str]:
 def write_metrics(history: History, path: Path) -> None:
     """Write ``metrics.csv``, one row per state, by atomic rename."""
     rows = metrics_rows(history)
-    partial = path.with_suffix(".partial")
+    partial = fresh(path.with_suffix(".partial"))
     with partial.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, fieldnames=list(rows[0]), lineterminator="\n")
         writer.writeheader()
@@ -191,7 +192,7 @@ def write_metrics(history: History, path: Path) -> None:
 
 def write_summary(summary: dict[str, Any], path: Path) -> None:
     """Write ``summary.json`` by atomic rename."""
-    partial = path.with_suffix(".partial")
+    partial = fresh(path.with_suffix(".partial"))
     partial.write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
     os.replace(partial, path)
 

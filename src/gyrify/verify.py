@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import json
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,8 +11,10 @@ from typing import Any, Final
 import numpy as np
 
 from gyrify.config import Config
+from gyrify.config.words import shorten
 from gyrify.errors import ConfigError, HistoryError
 from gyrify.reevaluation import Increment, reevaluated
+from gyrify.store.derived import read_metrics, read_summary, require_digest
 from gyrify.store.folder import JOURNAL
 from gyrify.store.history import History
 from gyrify.summary import metrics_rows, summarise
@@ -101,9 +101,9 @@ def verify(run: str | Path) -> Verification:
         if not (folder / JOURNAL).is_file():
             raise
         return Verification((Check("states", False, str(damaged)),))
-    checks = [_check_states(history), _check_config(history, folder)]
+    checks = [_check_states(history), _check_config(history, folder), _check_series(history, folder)]
     try:
-        summary = _read_summary(folder)
+        summary = read_summary(folder)
     except HistoryError as damaged:
         return Verification((*checks, Check("summary.json", False, str(damaged))))
     checks.append(_check_hash(history, summary))
@@ -153,14 +153,16 @@ def _check_config(history: History, folder: Path) -> Check:
     return Check("configuration", True, f"config.toml and the journal agree on {recorded[:12]}.")
 
 
-def _read_summary(folder: Path) -> dict[str, Any] | None:
-    path = folder / "summary.json"
-    if not path.is_file():
-        return None
+def _check_series(history: History, folder: Path) -> Check:
+    """The time series is the file that was written; HDF5 is not asked to open it."""
+    path, recorded, name = folder / "history.vtkhdf", history.journal.meta("vtkhdf_sha256"), "time series"
+    if not path.is_file() or not recorded:
+        return Check(name, True, "There is no history.vtkhdf whose checksum is on record.")
     try:
-        return dict(json.loads(path.read_text(encoding="utf-8")))
-    except (ValueError, TypeError) as error:
-        raise HistoryError(f"{path} is damaged: {error}.", "Delete it; it can be rebuilt.") from error
+        require_digest(path, recorded)
+    except HistoryError as differs:
+        return Check(name, False, str(differs))
+    return Check(name, True, f"history.vtkhdf is the file that was written ({recorded[:12]}).")
 
 
 def _check_hash(history: History, summary: dict[str, Any] | None) -> Check:
@@ -256,8 +258,11 @@ def _check_metrics(
     """Stored metrics against recomputed ones."""
     path = folder / "metrics.csv"
     if path.is_file():
-        with path.open(newline="", encoding="utf-8") as file:
-            stored = {str(n): row for n, row in enumerate(csv.DictReader(file))}
+        try:
+            stored = read_metrics(path)
+        except HistoryError as damaged:
+            yield Check("metrics.csv", False, str(damaged))
+            return
         found = {str(n): row for n, row in enumerate(rows)}
         yield _compare("metrics.csv", stored, found)
     if summary is not None:
@@ -279,7 +284,7 @@ def _differences(stored: Any, found: Any, place: str) -> Iterator[str]:
             inner = f"{place}.{key}" if place else str(key)
             yield from _differences(stored.get(key, "missing"), found.get(key, "missing"), inner)
     elif not _is_equal(stored, found):
-        yield f"{place} = {stored}, not {found}"
+        yield f"{shorten(place)} = {shorten(str(stored))}, not {shorten(str(found))}"
 
 
 def _is_equal(stored: Any, found: Any) -> bool:
@@ -288,5 +293,5 @@ def _is_equal(stored: Any, found: Any) -> bool:
         return True
     try:
         return math.isclose(float(stored), float(found), rel_tol=METRIC_BOUND, abs_tol=1e-12)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return False

@@ -75,6 +75,7 @@ def test_a_run_with_contact_passes_every_check(stored: Path):
     assert [check.name for check in verification.checks] == [
         "states",
         "configuration",
+        "time series",
         "result hash",
         "residual",
         "stored residual",
@@ -89,7 +90,7 @@ def test_a_run_with_contact_passes_every_check(stored: Path):
         "summary.json",
     ]
     assert json.loads(json.dumps(verification.as_dict()))["passed"] is True
-    assert str(verification).count("\n") == 13
+    assert str(verification).count("\n") == 14
     assert "FAILED" not in str(verification)
 
 

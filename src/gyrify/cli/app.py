@@ -28,6 +28,7 @@ from gyrify.cli.streams import complain, print_json
 from gyrify.cli.study import study
 from gyrify.cli.table import table
 from gyrify.cli.threshold import threshold
+from gyrify.config.words import shorten
 from gyrify.errors import ConfigError, GyrifyError, HistoryError, MeshError
 
 app = App(
@@ -82,6 +83,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader of a pipe has left
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return COMPLETED
+    except OSError as fault:
+        what = f"{shorten(str(fault.filename or 'A file'), 120)}: {fault.strerror or fault}."
+        return _report(HistoryError(what, "Check the path, its permissions and the disk."), tokens)
     finally:
         if arguments is None:  # all is done: an interrupt now would only garble the end of the process
             ignore_interrupts()

@@ -13,7 +13,7 @@ def print_json(document: object) -> None:
 
 def complain(message: str) -> None:
     """Print a message on stderr."""
-    text = f"gyrify: {message}\n"
+    text = f"gyrify: {_harmless(message)}\n"
     encoding = sys.stderr.encoding or "utf-8"
     sys.stderr.write(text.encode(encoding, "backslashreplace").decode(encoding))
 
@@ -21,4 +21,9 @@ def complain(message: str) -> None:
 def say(text: str) -> None:
     """Print text on stdout, in whatever encoding it has."""
     encoding = sys.stdout.encoding or "utf-8"
-    print(text.encode(encoding, "backslashreplace").decode(encoding))
+    print(_harmless(text).encode(encoding, "backslashreplace").decode(encoding))
+
+
+def _harmless(text: str) -> str:
+    """Text without characters that command a terminal or hide: they are written as escapes."""
+    return "".join(c if c.isprintable() or c == "\n" else repr(c)[1:-1] for c in text)

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from gyrify.store.files import fresh
+
 
 @contextmanager
 def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
@@ -23,7 +25,7 @@ def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
         Temporary file beside it, with the suffix ``.partial``.
     """
     target = Path(path)
-    partial = target.with_name(target.name + ".partial")
+    partial = fresh(target.with_name(target.name + ".partial"))
     try:
         yield partial
         os.replace(partial, target)

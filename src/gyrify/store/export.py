@@ -17,6 +17,7 @@ from gyrify.errors import ConfigError, HistoryError
 from gyrify.solve.types import FloatArray
 from gyrify.store.faults import storage_faults
 from gyrify.store.fields import POINT_FIELDS, fields
+from gyrify.store.files import fresh
 from gyrify.store.history import History
 from gyrify.store.vtkhdf import written_states
 
@@ -97,7 +98,7 @@ def _write_csv(history: History, path: Path, states: list[int]) -> list[Path]:
     place = [""] * mesh.n_points
     for order, point in enumerate(mesh.contour.tolist()):
         place[point] = str(order)
-    with path.open("w", newline="", encoding="utf-8") as file:
+    with fresh(path).open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(CSV_COLUMNS)
         for number in states:
@@ -113,7 +114,7 @@ def _write_stl(history: History, path: Path, states: list[int]) -> list[Path]:
     files = _numbered(path, states)
     for file, number in zip(files, states, strict=True):
         sheet = meshio.Mesh(_padded(history.points(number)), [("triangle", history.mesh.triangles)])
-        meshio.write(file, sheet, file_format="stl", binary=True)
+        meshio.write(fresh(file), sheet, file_format="stl", binary=True)
     return files
 
 
@@ -123,7 +124,7 @@ def _write_vtu(history: History, path: Path, states: list[int], names: tuple[Out
     for file, number in zip(files, states, strict=True):
         point_data, cell_data = _data(history, number, names)
         grid = meshio.Mesh(_padded(history.mesh.points), _cells(history), point_data, cell_data)
-        meshio.write(file, grid, file_format="vtu")
+        meshio.write(fresh(file), grid, file_format="vtu")
     if len(files) == 1:
         return files
     times = history.growth_times[states]
@@ -133,7 +134,7 @@ def _write_vtu(history: History, path: Path, states: list[int], names: tuple[Out
     )
     series = path.with_suffix(".pvd")
     collection = f"  <Collection>\n{entries}  </Collection>\n"
-    series.write_text(
+    fresh(series).write_text(
         f'<VTKFile type="Collection" version="0.1">\n{collection}</VTKFile>\n', encoding="utf-8"
     )
     return [series, *files]
@@ -145,7 +146,7 @@ def _write_xdmf(
     """Temporal collection of grids that share the mesh; all numbers are in the HDF5 file beside it."""
     heavy = path.with_suffix(".h5")
     grids = ElementTree.Element("Grid", Name="run", GridType="Collection", CollectionType="Temporal")
-    with h5py.File(heavy, "w") as file:
+    with h5py.File(fresh(heavy), "w") as file:
         file["points"], file["cells"] = _padded(history.mesh.points), history.mesh.cells
         for number in states:
             grid = ElementTree.SubElement(grids, "Grid", Name=f"increment {number}", GridType="Uniform")
@@ -169,7 +170,7 @@ def _write_xdmf(
     root = ElementTree.Element("Xdmf", Version="3.0")
     ElementTree.SubElement(root, "Domain").append(grids)
     ElementTree.indent(root)
-    ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+    ElementTree.ElementTree(root).write(fresh(path), encoding="utf-8", xml_declaration=True)
     return [path, heavy]
 
 

@@ -11,6 +11,7 @@ from typing import Final
 
 from gyrify.errors import HistoryError
 from gyrify.store.faults import storage_faults
+from gyrify.store.files import fresh, refuse_link
 from gyrify.store.lock import run_lock
 
 JOURNAL: Final = "journal.sqlite"
@@ -82,17 +83,19 @@ def stored_folder(folder: Path) -> Iterator[str]:
     Raises
     ------
     HistoryError
-        If there is no run in it, another process uses it, or it cannot be written.
+        If there is no run in it or a link to one, another process uses it, or it cannot be written.
     """
     if not (folder / JOURNAL).is_file():
         raise HistoryError(f"There is no run in {folder}.", "Name a folder that `gyrify run` has written.")
+    for name in ("", "-wal", "-shm"):
+        refuse_link(folder / f"{JOURNAL}{name}")
     with run_lock(folder) as note:
         yield note
 
 
 def write_config(folder: Path, config: str) -> None:
     """Write ``config.toml`` by atomic rename."""
-    partial = folder / "config.partial"
+    partial = fresh(folder / "config.partial")
     partial.write_text(config, encoding="utf-8")
     os.replace(partial, folder / "config.toml")
 
@@ -100,4 +103,5 @@ def write_config(folder: Path, config: str) -> None:
 def _leftovers(folder: Path) -> Iterator[Path]:
     """Files of an earlier run, and nothing else that a user may keep in the folder."""
     names = [*RUN_FILES, f"{JOURNAL}-wal", f"{JOURNAL}-shm"]
-    return (folder / name for name in names if (folder / name).exists())
+    paths = (folder / name for name in names)
+    return (path for path in paths if path.is_symlink() or path.exists())

@@ -18,6 +18,7 @@ from gyrify.solve.quasistatic import TICKS
 from gyrify.solve.result import Stats
 from gyrify.solve.stability import Onset
 from gyrify.solve.types import FloatArray
+from gyrify.store.database import RERUN
 from gyrify.store.journal import Journal
 from gyrify.store.lock import has_owner
 
@@ -58,7 +59,12 @@ class History:
         HistoryError
             If the folder holds no run, or a damaged one.
         """
-        return History(Journal.open(Path(folder) / "journal.sqlite", read_only=True))
+        history = History(Journal.open(Path(folder) / "journal.sqlite", read_only=True))
+        if len(history) == 0:
+            raise HistoryError(f"The run in {folder} has no state yet.", "Continue it with `gyrify resume`.")
+        if history.positions[-1] > TICKS * history.config.solver.increments:
+            raise HistoryError(f"The run in {folder} goes beyond the end of its growth.", RERUN)
+        return history
 
     @cached_property
     def slice(self) -> Slice:
@@ -127,7 +133,10 @@ class History:
             raise HistoryError(
                 f"There is no state {index}.", f"This history holds states 0 to {len(self) - 1}."
             )
-        return self.journal.displacement(number)
+        found = self.journal.displacement(number)
+        if found.shape != self.slice.state_shape:
+            raise HistoryError(f"State {index} is none of the mesh of its configuration.", RERUN)
+        return found
 
     def points(self, index: int = -1) -> FloatArray:
         """(n_points, 2) deformed coordinates x [mm] of a state.

@@ -24,6 +24,7 @@ from gyrify.solve.stability import Onset
 from gyrify.solve.types import FloatArray
 from gyrify.store import onset_rows
 from gyrify.store.database import RERUN, connect, transaction, translated
+from gyrify.store.integrity import confine, is_sound, is_sound_onset, require_facts, require_schema
 
 FORMAT: Final = 1
 _APPLICATION_ID: Final = 0x67797269  # "gyri"
@@ -108,6 +109,7 @@ class Journal:
             raise _nothing_stored(path)
         with translated(str(path)):
             connection = connect(path, read_only)
+            confine(connection)
             (application,) = connection.execute("PRAGMA application_id").fetchone()
             (version,) = connection.execute("PRAGMA user_version").fetchone()
             (n_tables,) = connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
@@ -122,6 +124,8 @@ class Journal:
                 f"{path} has journal format {version}; this version of gyrify reads format {FORMAT}.",
                 "Use the version of gyrify that wrote it (see `versions` in summary.json), or run again.",
             )
+        with translated(str(path)):
+            require_schema(connection, _SCHEMA + onset_rows.SCHEMA, str(path))
         journal = Journal(connection, path)
         journal.check()
         return journal
@@ -144,13 +148,22 @@ class Journal:
             If anything that a run wrote is not what it wrote, or an increment is missing.
         """
         with translated(self.name):
-            meta = dict(
-                self._connection.execute("SELECT key, value FROM meta WHERE key IN ('config', 'seal')")
-            )
+            meta = dict(self._connection.execute("SELECT key, value FROM meta"))
+            onset = self._connection.execute("SELECT * FROM onset").fetchone()
+            pivots = self._connection.execute("SELECT number, n_negative FROM stability").fetchall()
+        require_facts(meta, self.name)
         if "seal" in meta and _sealed({"config": str(meta.get("config"))})["seal"] != meta["seal"]:
             raise HistoryError(f"The configuration in {self.name} is damaged: its checksum differs.", RERUN)
+        position, n_bytes = -1, 0
         for number in range(len(self)):
-            self._row(number)
+            row = self._row(number)
+            if not is_sound(row, position) or (number > 0 and len(row[10]) != n_bytes):
+                raise HistoryError(f"Increment {number} in {self.name} is none of a run.", RERUN)
+            position, n_bytes = row[1], len(row[10])
+        if not all(type(value) is int for pair in pivots for value in pair) or (
+            onset is not None and not is_sound_onset(onset, n_bytes)
+        ):
+            raise HistoryError(f"What {self.name} says of stability is none of a run.", RERUN)
 
     def meta(self, key: str, default: str = "") -> str:
         """A recorded fact, such as the configuration or the status."""

@@ -13,8 +13,10 @@ from typing import Final
 
 from filelock import FileLock, Timeout
 
+from gyrify.config.words import shorten
 from gyrify.errors import HistoryError
 from gyrify.store.faults import storage_faults
+from gyrify.store.files import read_facts, refuse_link
 
 OWNER: Final = "run.owner.json"
 
@@ -41,6 +43,8 @@ def run_lock(folder: Path, what: str = "run") -> Iterator[str]:
         If another process holds the folder, or the folder cannot be written.
     """
     owner = folder / OWNER
+    for path in (owner, folder / "run.lock"):
+        refuse_link(path)
     lock = FileLock(folder / "run.lock")
     with storage_faults(folder):
         try:
@@ -78,9 +82,9 @@ def has_owner(folder: Path) -> bool:
         False once the process that claimed the folder is known to have ended.
     """
     try:
-        fields = json.loads((folder / OWNER).read_text(encoding="utf-8"))
+        fields = read_facts(folder / OWNER)
         pid, host = int(fields["pid"]), fields["host"]
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, OverflowError):
         return False
     if host != socket.gethostname() or sys.platform == "win32":
         return True
@@ -95,7 +99,7 @@ def has_owner(folder: Path) -> bool:
 
 def _describe(owner: Path) -> str:
     try:
-        fields = json.loads(owner.read_text(encoding="utf-8"))
-        return f"process {int(fields['pid'])} on {fields['host']}"
-    except (OSError, ValueError, KeyError, TypeError):
+        fields = read_facts(owner)
+        return f"process {int(fields['pid'])} on {shorten(str(fields['host']))}"
+    except (OSError, ValueError, KeyError, TypeError, OverflowError):
         return "a process of unknown number"

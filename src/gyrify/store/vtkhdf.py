@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -25,11 +26,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gyrify.config.run_sections import OutputField
+from gyrify.errors import HistoryError
 from gyrify.mesh import Mesh
 from gyrify.solve.types import FloatArray
 from gyrify.store.chunks import Layout, encoded
+from gyrify.store.derived import sha256_of
 from gyrify.store.faults import storage_faults
 from gyrify.store.fields import CONTOUR_FIELDS, POINT_FIELDS, STATIC_FIELDS, UNITS, FieldMaker, StateFields
+from gyrify.store.files import fresh
 from gyrify.store.history import History
 
 FORMAT_VERSION: Final = (2, 2)
@@ -84,13 +88,22 @@ def write_vtkhdf(
     partial = target.with_name(target.name + ".partial")
     with storage_faults(target.parent, str(target)):
         try:
-            with h5py.File(partial, "w") as file:
+            with h5py.File(fresh(partial), "w") as file:
                 root = file.create_group("VTKHDF")
                 _write_geometry(root, history, steps)
                 _write_fields(root, history, steps, names)
             os.replace(partial, target)
+            _note_digest(history, target)
         finally:
             partial.unlink(missing_ok=True)
+
+
+def _note_digest(history: History, target: Path) -> None:
+    """Have the journal remember the file beside it, so that it can be known again without being opened."""
+    path = history.journal.path
+    if path is not None and target.resolve() == (path.parent / "history.vtkhdf").resolve():
+        with suppress(HistoryError):  # a journal that may only be read
+            history.journal.set_meta(vtkhdf_sha256=sha256_of(target))
 
 
 def written_states(n_states: int, every: int) -> list[int]:

@@ -10,6 +10,11 @@ import hashlib
 import io
 import json
 import os
+import re
+import struct
+import tokenize
+import zipfile
+import zlib
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any, Final, Self
@@ -17,13 +22,31 @@ from typing import Any, Final, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from gyrify.config.words import shorten
+from gyrify.errors import HistoryError
 from gyrify.metrics import gyrification_index
+from gyrify.store.files import fresh, read_facts, refuse_link
 from gyrify.store.history import History
 from gyrify.summary import measure_state
 
 FORMAT: Final = 1
+STATUSES: Final = ("completed", "failed", "stopped", "interrupted")
 POINT: Final = "point.json"
 FINAL: Final = "final.npz"
+_UNREADABLE: Final = (
+    OSError,
+    ValueError,
+    KeyError,
+    EOFError,
+    SyntaxError,
+    MemoryError,
+    OverflowError,
+    RuntimeError,
+    zipfile.BadZipFile,
+    zlib.error,
+    tokenize.TokenError,
+    struct.error,
+)
 FloatArray = NDArray[np.float64]
 
 
@@ -76,9 +99,36 @@ class FinalState:
 
     @classmethod
     def load(cls, path: Path) -> Self:
-        """Read them back."""
-        with np.load(path, allow_pickle=False) as arrays:
-            return cls(**{field.name: arrays[field.name] for field in fields(cls)})
+        """Read them back.
+
+        Raises
+        ------
+        HistoryError
+            If the file is missing or not what `to_bytes` gives.
+        """
+        try:
+            _refuse_packed(path)
+            with np.load(path, allow_pickle=False) as arrays:
+                found = {field.name: np.asarray(arrays[field.name]) for field in fields(cls)}
+        except _UNREADABLE as fault:
+            raise HistoryError(
+                f"{path} is damaged: {_told(fault)}.", "Run the study again to redo it."
+            ) from fault
+        if any(array.dtype != np.float64 for array in found.values()):
+            raise HistoryError(f"{path} holds no numbers.", "Run the study again to redo it.")
+        return cls(**found)
+
+
+def _told(fault: Exception) -> str:
+    """What went wrong, without the addresses that a library may show."""
+    return shorten(re.sub(r"<[^>]*>", "…", " ".join(str(fault).split())), 120)
+
+
+def _refuse_packed(path: Path) -> None:
+    """Refuse compressed members: what is small on the disk is small in memory."""
+    with zipfile.ZipFile(path) as archive:
+        if any(member.compress_type != zipfile.ZIP_STORED for member in archive.infolist()):
+            raise ValueError("it is compressed")
 
 
 def _indices(history: History) -> tuple[FloatArray, FloatArray]:
@@ -125,6 +175,7 @@ class Record:
 
 def write_record(folder: Path, record: Record, final: bytes) -> None:
     """Write the files of a point, each by atomic rename, ``point.json`` last."""
+    refuse_link(folder)
     folder.mkdir(parents=True, exist_ok=True)
     if final:
         _write(folder / FINAL, final)
@@ -148,10 +199,12 @@ def read_record(folder: Path, *, check: bool = True) -> Record | None:
     Record or None
     """
     try:
-        told = json.loads((folder / POINT).read_text(encoding="utf-8"))
+        told = read_facts(folder / POINT)
         if told.pop("format") != FORMAT:
             return None
         record = Record(**told)
+        if not _is_plausible(record):
+            return None
         if check and record.final_sha256 != sha256(_read(folder / FINAL)):
             return None
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
@@ -159,8 +212,21 @@ def read_record(folder: Path, *, check: bool = True) -> Record | None:
     return record
 
 
+def _is_plausible(record: Record) -> bool:
+    """Whether every field has its type, and the status is one that there is."""
+    texts = (record.config_hash, record.solver_version, record.reason, record.advice, record.final_sha256)
+    return (
+        all(isinstance(text, str) for text in texts)
+        and record.status in STATUSES
+        and isinstance(record.config, dict)
+        and isinstance(record.summary, dict | None)
+        and isinstance(record.wall_s, int | float)
+    )
+
+
 def begin_folder(folder: Path, config_hash: str, solver_version: str) -> None:
     """Say in a folder what is going to be computed, and with what."""
+    refuse_link(folder)
     folder.mkdir(parents=True, exist_ok=True)
     begun = {"format": FORMAT, "begun": [config_hash, solver_version]}
     _write(folder / POINT, (json.dumps(begun) + "\n").encode())
@@ -169,12 +235,12 @@ def begin_folder(folder: Path, config_hash: str, solver_version: str) -> None:
 def was_begun(folder: Path, config_hash: str, solver_version: str) -> bool:
     """Whether a folder holds a run of this configuration by this solver, ended or not."""
     try:
-        told = json.loads((folder / POINT).read_text(encoding="utf-8"))
+        told = read_facts(folder / POINT)
         return bool(
             told.get("begun", [told.get("config_hash"), told.get("solver_version")])
             == [config_hash, solver_version]
         )
-    except (OSError, ValueError, AttributeError):
+    except (OSError, ValueError):
         return False
 
 
@@ -188,6 +254,6 @@ def _read(path: Path) -> bytes:
 
 
 def _write(path: Path, data: bytes) -> None:
-    partial = path.with_name(path.name + ".partial")
+    partial = fresh(path.with_name(path.name + ".partial"))
     partial.write_bytes(data)
     os.replace(partial, path)

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from gyrify.config import Config
+from gyrify.config.words import shorten, show
 from gyrify.errors import ConfigError, HistoryError
 from gyrify.phenotype import classify, grown_thickness
+from gyrify.store.files import fresh
 from gyrify.study.archive import Record
 from gyrify.study.definition import Point, value_of
+from gyrify.study.parameter import require_variable
 
 if TYPE_CHECKING:
     from pyarrow import DataType, Table
@@ -79,7 +83,7 @@ def write_results(folder: Path, points: Sequence[Point], records: Mapping[str, R
     import pyarrow.parquet as pq
 
     known = [point for point in points if point.key in records]
-    partial = folder / f"{RESULTS}.partial"
+    partial = fresh(folder / f"{RESULTS}.partial")
     pq.write_table(results_table(known, records), partial, compression="zstd")
     os.replace(partial, folder / RESULTS)
     lines = [f"{point.key},{records[point.key].wall_s:.4f}\n" for point in known]
@@ -146,13 +150,36 @@ def read_results(folder: str | Path) -> Table:
         )
     try:
         table = pq.read_table(path)
-    except (OSError, pa.ArrowException) as fault:
+        table.validate(full=True)
+        _require_columns(table)
+    except (OSError, ValueError, pa.ArrowException, MemoryError) as fault:
         raise HistoryError(
-            f"{path} is damaged: {' '.join(str(fault).split())[:120]}.",
+            f"{path} is damaged: {shorten(' '.join(str(fault).split()), 120)}.",
             "Run the study again: it rebuilds its results from the stored runs.",
         ) from fault
     times = _timings(path.with_name(TIMINGS))
     return table.append_column("wall_s", pa.array(map(times.get, table["key"].to_pylist()), pa.float64()))
+
+
+def _require_columns(table: Table) -> None:
+    """Refuse what is no table of a study: other columns or types, or a key that is no name of a run."""
+    kinds = dict(zip(table.column_names, map(str, table.schema.types), strict=True))
+    kinds = {name: _FLOAT if kind == "double" else kind for name, kind in kinds.items()}
+    if len(kinds) < table.num_columns:
+        raise ValueError("a column is there twice")
+    wanted = dict.fromkeys(_IDENTITY, _TEXT) | QUANTITIES | {"result_hash": _TEXT, "wall_s": "nothing"}
+    for name, kind in kinds.items():
+        known = wanted.get(name)
+        if kind not in (_INT, _TEXT, _BOOL, _FLOAT) or (known is not None and kind != known):
+            raise ValueError(f"the column {shorten(name)} holds {shorten(kind)}")
+        if "." in name:
+            require_variable(name, "its columns")
+    for name in _IDENTITY:
+        if name not in kinds or table[name].null_count:
+            raise ValueError(f"the column {name} is missing or has gaps")
+    for key in table["key"].to_pylist():
+        if not re.fullmatch(r"[0-9a-f]{12}", key):
+            raise ValueError(f"{show(key)} is no key of a run")
 
 
 def flat(nested: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:

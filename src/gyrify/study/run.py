@@ -12,6 +12,7 @@ from typing import Any, Final
 from gyrify.errors import ConfigError
 from gyrify.pool import MAX_WORKERS
 from gyrify.store.faults import storage_faults
+from gyrify.store.files import fresh, refuse_link
 from gyrify.store.lock import run_lock
 from gyrify.study.book import Book
 from gyrify.study.definition import Keep, Point, Study, require_keep
@@ -41,7 +42,7 @@ def run_study(study: Study, folder: str | Path, **options: Any) -> StudyResult:
     target = Path(folder)
     with storage_faults(target, what="study"):
         target.mkdir(parents=True, exist_ok=True)
-        partial_file = target / f"{STUDY_FILE}.partial"
+        partial_file = fresh(target / f"{STUDY_FILE}.partial")
         partial_file.write_text(study.to_toml(), encoding="utf-8")
         os.replace(partial_file, target / STUDY_FILE)
     return run_points(study.points(), target, **{"keep": study.keep, **options})
@@ -100,6 +101,7 @@ def run_points(
     target = Path(folder).absolute()
     with ExitStack() as stack:
         with storage_faults(target, what="study"):
+            refuse_link(target / RUNS)
             (target / RUNS).mkdir(parents=True, exist_ok=True)
         stack.enter_context(run_lock(target, "study"))
         book = Book(tuple(points), target, require_keep(keep), retry_failed, observer or (lambda _: None))

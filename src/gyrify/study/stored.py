@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -11,12 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gyrify.config import Config
+from gyrify.config.words import shorten
 from gyrify.errors import HistoryError
 from gyrify.mesh import Mesh
 from gyrify.meshing import build_mesh
 from gyrify.study.archive import FINAL, FinalState, Record, read_record
 
 RUNS = "runs"
+_REDO = "Run the study again to redo it."
 FloatArray = NDArray[np.float64]
 
 
@@ -67,11 +70,23 @@ class StoredPoint:
         Raises
         ------
         HistoryError
-            If the run has no state.
+            If the run has no state, or one that does not fit its configuration.
         """
         if not self.record.final_sha256:
             raise HistoryError(f"The run {self.key} has no state: {self.record.reason}", self.record.advice)
-        return FinalState.load(self.folder / FINAL)
+        final = FinalState.load(self.folder / FINAL)
+        n, n_states, onset = self.mesh.n_points, final.growth_time.size, final.onset_vector.shape
+        if (
+            final.displacement.shape != (n, 2)
+            or final.axial_stretch.shape != ()
+            or n_states == 0
+            or any(a.shape != (n_states,) for a in (final.growth_time, final.gi_closing, final.gi_hull))
+            or onset not in ((0, 2), (n, 2))
+            or final.onset_displacement.shape != onset
+            or not np.isfinite(final.displacement).all()
+        ):
+            raise HistoryError(f"The final state of {self.key} does not fit its mesh.", _REDO)
+        return final
 
     @property
     def points(self) -> FloatArray:
@@ -109,9 +124,7 @@ def final_state(folder: str | Path, key: str) -> StoredPoint:
         If there is none, or a damaged one.
     """
     target = Path(folder) / RUNS / key
-    record = read_record(target)
+    record = read_record(target) if re.fullmatch(r"[0-9a-f]{12}", key) else None
     if record is None:
-        raise HistoryError(
-            f"There is no whole run {key[:60]!r} in the study {folder}.", "Run the study again to redo it."
-        )
+        raise HistoryError(f"There is no whole run {shorten(key)!r} in the study {folder}.", _REDO)
     return StoredPoint(target, record)

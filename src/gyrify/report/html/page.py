@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from gyrify.store.faults import storage_faults
+from gyrify.store.files import fresh
 
 STYLES: Final = ("base.css", "viewer.css", "sections.css", "study.css")
 _VIEWER: Final = (
@@ -106,7 +107,7 @@ def write_page(text: str, path: Path) -> None:
     partial = path.with_name(path.name + ".partial")
     with storage_faults(path.parent, str(path)):
         try:
-            partial.write_text(text, encoding="utf-8", newline="\n")
+            fresh(partial).write_text(text, encoding="utf-8", newline="\n")
             os.replace(partial, path)
         finally:
             partial.unlink(missing_ok=True)

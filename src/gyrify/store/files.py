@@ -1,0 +1,55 @@
+"""Files written beside their target first; a folder from elsewhere may hold links where they would go."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any, Final
+
+from gyrify.errors import HistoryError
+
+# Largest file of facts (summary, point, owner) that is read, in bytes.
+MAX_FACTS: Final = 16_000_000
+
+
+def fresh(path: Path) -> Path:
+    """Path of a file that is about to be written anew: what has the name now, also a link, is taken away."""
+    path.unlink(missing_ok=True)
+    return path
+
+
+def refuse_link(path: Path) -> None:
+    """Refuse to write through a link, which may lead out of the folder.
+
+    Raises
+    ------
+    HistoryError
+        If the path is a symbolic link.
+    """
+    if path.is_symlink():
+        raise HistoryError(
+            f"{path} is a link: nothing is written through it.", "Remove it, or put the file itself there."
+        )
+
+
+def read_facts(path: Path) -> dict[str, Any]:
+    """Read a JSON object.
+
+    Raises
+    ------
+    ValueError
+        If the file is too large, or holds anything but an object.
+    OSError
+        If it cannot be read.
+    """
+    with path.open("rb") as file:
+        data = file.read(MAX_FACTS + 1)
+    if len(data) > MAX_FACTS:
+        raise ValueError(f"it is larger than {MAX_FACTS} bytes")
+    try:
+        told = json.loads(data.decode("utf-8"))
+    except RecursionError:
+        raise ValueError("it is nested too deeply") from None
+    if not isinstance(told, dict):
+        raise ValueError("it is no object of JSON")
+    return told
