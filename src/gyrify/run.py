@@ -100,7 +100,7 @@ class Run:
         try:
             self.problem.compile()  # memory may run out even here
             self._accept(tuple(observers), watch)
-            self.journal.set_meta(status="completed", stable="true" if self._is_stable() else "false")
+            self.journal.set_meta(status="completed", stable=self._is_stable())
         except LimitReachedError as limit:
             self.journal.set_meta(status="stopped", reason=limit.message, advice=limit.advice)
         except KeyboardInterrupt:
@@ -119,14 +119,18 @@ class Run:
             self._record("failed", reason, "Once its cause is removed, continue with `gyrify resume`.")
             raise
 
-    def _is_stable(self) -> bool:
+    def _is_stable(self) -> str:
         """Whether the last state is stable without dissipation: seen by the detection, or looked at now."""
         last = len(self.journal) - 1
         known = self.journal.negative_pivots.get(last)
         if known is not None:
-            return known == 0
+            return "false" if known else "true"
         state = self.journal.state(last)
-        return self.problem.is_stable(state.position / self.problem.stepping.end, state.u)
+        try:
+            stable = self.problem.is_stable(state.position / self.problem.stepping.end, state.u)
+        except SolveError:  # growth has come to its end all the same
+            return ""
+        return "true" if stable else "false"
 
     def _linear_solver(self) -> str:
         """Library that solves; the one that the run began with, or its end would be another."""

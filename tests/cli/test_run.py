@@ -221,3 +221,12 @@ def test_a_disk_without_a_byte_is_refused_at_once(toml: str, small_disk: Path, c
     _, err = capsys.readouterr()
     assert "Free space" in err
     assert "Traceback" not in err
+
+
+def test_memory_that_runs_out_is_said_and_no_traceback(monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+    def exhausted(*_: object, **__: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("gyrify.cli.app.app", exhausted)
+    assert main(["run"]) == 1
+    assert "Memory ran out." in capsys.readouterr().err
