@@ -10,12 +10,14 @@ from pathlib import Path
 
 import h5py
 import pytest
+from guard import is_clear
 from stored import TINY, journal_bytes
 from stored_targets import _seal
 
 import gyrify
 from gyrify.cli import main
-from gyrify.errors import HistoryError
+from gyrify.config import Config
+from gyrify.errors import ConfigError, HistoryError
 from gyrify.store import History, Journal
 from gyrify.store.derived import read_metrics, read_summary
 from gyrify.store.lock import has_owner, run_lock
@@ -192,3 +194,10 @@ def test_journals_that_a_run_makes_pass(run: Path) -> None:
     with contextlib.closing(Journal.open(run / "journal.sqlite")) as journal:
         journal.check()
         assert len(journal) == 3
+
+
+def test_a_suggestion_repeats_no_long_key() -> None:
+    with pytest.raises(ConfigError) as raised:
+        Config().with_overrides({f"growth.{'a.' * 3000}\x1b.ratio": 1.0})
+    assert is_clear(str(raised.value))
+    assert len(str(raised.value)) < 500

@@ -92,7 +92,7 @@ def unknown_key(model: type[BaseModel], owner: type[BaseModel], name: str) -> st
     }
     close = "" if key in elsewhere else nearest(key, owner.model_fields)
     if close:
-        suggestion = f"{prefix}.{close}" if prefix else close
+        suggestion = f"{shorten(prefix)}.{close}" if prefix else close
     else:
         suggestion = elsewhere.get(nearest(key, elsewhere), "")
     hint = f"Did you mean {suggestion}?" if suggestion else f"Known: {', '.join(owner.model_fields)}."
