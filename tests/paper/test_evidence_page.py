@@ -34,7 +34,7 @@ def script() -> ModuleType:
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("paper")
     bench = FakeBench(workers=2)
-    found = screen(bench, Config(), candidates=[Candidate(Config(), one) for one in grid()[::6]])
+    found = screen(bench, Config(), candidates=[Candidate(Config(), one) for one in grid()[::4]])
     ensembles = [repeat(bench, Config(), c.reading, stability=False) for c in found.candidates[:2]]
     write_readings(found, ensembles, out)
     write_text(out / "best-1" / "scoreboard.md", scoreboard_markdown(ensembles[0].members[0].scoreboard))

@@ -52,7 +52,7 @@ def test_curves_of_runs_share_their_axes(runs, what, panels, words) -> None:
 
 
 def test_modes_of_runs_have_one_scale(runs) -> None:
-    figure = gyrify.plot(runs["linear"], "mode", compare=[runs["softer"]])
+    figure = gyrify.plot(runs["linear"], "mode", compare=[runs["mean_dilatation"]])
     assert len({(axes.get_xlim(), axes.get_ylim()) for axes in figure.axes}) == 1
 
 
