@@ -168,7 +168,7 @@ def test_signals_are_as_before_after_a_run(tiny: Config, tmp_path: Path) -> None
 def test_interrupt_at_random_moments(long: Config, expected: str, tmp_path: Path, seed: int) -> None:
     chance, folder = random.Random(seed), tmp_path / "run"
     process = start(long, folder)
-    time.sleep(chance.uniform(0.1, 8.0))
+    time.sleep(chance.uniform(0.1, 4.0))
     if process.poll() is not None:
         process.communicate()
         pytest.skip("the run was done")
