@@ -77,21 +77,22 @@ def paper(
     reading = Reading(Mechanics.of(base), require_gi(gi or preset_about(preset).gi_definition))
     processes = _cores() if workers is None else workers
     _require(processes, minutes)
+    seen = progress_of_points(quiet or readings)
     try:
-        with (
-            ends_are_interrupts(),
-            progress_of_points(quiet or readings) as observer,
-            Bench(out, processes, observer) as bench,
-        ):
+        with ends_are_interrupts(), seen as observer, Bench(out, processes, observer) as bench:
             if readings:
                 return _readings(bench, base, begun, minutes, seed, json, quiet)
             return _one(bench, base, reading, begun, seed, json)
     except KeyboardInterrupt:
-        said, advice = "Every finished run is stored.", "Run the same command again to continue."
-        complain(f"Interrupted. {said} {advice}")
-        if json:
-            print_json({"error": "Interrupted", "message": said, "advice": advice})
-        return INTERRUPTED
+        return _interrupted(json)
+
+
+def _interrupted(json: bool) -> int:
+    said, advice = "Every finished run is stored.", "Run the same command again to continue."
+    complain(f"Interrupted. {said} {advice}")
+    if json:
+        print_json({"error": "Interrupted", "message": said, "advice": advice})
+    return INTERRUPTED
 
 
 def _require(workers: int, minutes: float) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Final, get_args
 
@@ -12,7 +12,7 @@ import numpy as np
 from gyrify.config.run_sections import OutputField
 from gyrify.errors import ConfigError
 from gyrify.report.animate_files import durations, video_encoder, watched, write_gif, write_mp4
-from gyrify.report.animate_scene import Scene
+from gyrify.report.animate_scene import Pixels, Scene
 from gyrify.report.files import whole_file
 from gyrify.report.plot.fields import PAINTS
 from gyrify.report.plot.shown import Run, Shown, run_title, show
@@ -41,13 +41,12 @@ def animate(
 ) -> Path:
     """Write growth as a GIF or an MP4, by atomic rename.
 
-    Growth time runs evenly, and each frame shows the stored state nearest to its time; the last one is held.
-    Frame and colours are the same throughout. The same run gives the same bytes.
+    Growth time runs evenly; each frame shows the stored state nearest to its time, the last one is held.
 
     Parameters
     ----------
     run : History or path
-        The run, or its folder; it need not have completed, and the picture says so.
+        The run, or its folder; where it has not completed, the picture says so.
     out : path
         File to write, ``.gif`` or ``.mp4``.
     fps : float
@@ -89,13 +88,20 @@ def animate(
     scene = Scene(states, 2 * round(width / 2), _field(field))
     frames = watched(scene.pixels, len(states), observe)
     with storage_faults(target.parent, f"The animation {target}"), whole_file(target) as partial:
-        if target.suffix.lower() == ".mp4":
-            repeats[-1] += math.ceil(HOLD * fps)
-            write_mp4(partial, frames, scene.size, repeats, fps)
-        else:
-            samples = [scene.pixels(number) for number in (0, len(states) // 2, len(states) - 1)]
-            write_gif(partial, frames, samples, scene.colours, durations(repeats, fps, HOLD))
+        _write(partial, target.suffix.lower(), scene, frames, repeats, fps)
     return target
+
+
+def _write(
+    file: Path, suffix: str, scene: Scene, frames: Iterator[Pixels], repeats: list[int], fps: float
+) -> None:
+    """Write the frames; the last one is held."""
+    if suffix == ".mp4":
+        repeats[-1] += math.ceil(HOLD * fps)
+        write_mp4(file, frames, scene.size, repeats, fps)
+    else:
+        samples = [scene.pixels(number) for number in (0, len(repeats) // 2, len(repeats) - 1)]
+        write_gif(file, frames, samples, scene.colours, durations(repeats, fps, HOLD))
 
 
 def frames_of(history: History, count: int) -> tuple[list[Shown], list[int]]:

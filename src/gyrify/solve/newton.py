@@ -119,22 +119,26 @@ def minimise(
         try:
             if not is_old:
                 model.renew(_definite_factor(total, at.u, system, candidates, mass))
-            du = model.direction(at.gradient)
+            at, result = _step(total, at, model, system)
         except SolveError:
             result = Result.SINGULAR
-            break
-        step, after, result = _line_search(total, at, du, system)
-        if result is not Result.MAX_NEWTON and is_old:
+        if is_old and result is not Result.MAX_NEWTON:
             # an old factor may fail where a new one does not
             model.renew(None)
             result = Result.MAX_NEWTON
-        elif result is Result.MAX_NEWTON:
-            # a shortened step says nothing of the next one
-            contraction = min(1.0, after.residual / at.residual) if step == 1.0 else 1.0
-            model.learn(step * du, after.gradient - at.gradient, contraction)
-        at = after
     work = Stats(iteration, system.factorizations - before[0], system.analyses - before[1])
     return Solution(at.u, result, at.residual, work)
+
+
+def _step(total: TotalEnergy, at: Iterate, model: QuasiNewton, system: System) -> tuple[Iterate, Result]:
+    """Step along the model's direction; the model learns from it."""
+    direction = model.direction(at.gradient)
+    step, after, result = _line_search(total, at, direction, system)
+    if result is Result.MAX_NEWTON:
+        # a shortened step says nothing of the next one
+        contraction = min(1.0, after.residual / at.residual) if step == 1.0 else 1.0
+        model.learn(step * direction, after.gradient - at.gradient, contraction)
+    return after, result
 
 
 def largest_force(gradient: FloatArray, system: System) -> float:
