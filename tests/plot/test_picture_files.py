@@ -98,10 +98,16 @@ def test_an_animation_is_written_and_told(runs, tmp_path, capsys: Capture) -> No
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_leaves_no_half_of_a_file(runs, tmp_path: Path, number: int) -> None:
     target = tmp_path / "a.gif"
+    # a program that is started in the background of a script ignores SIGINT unless told otherwise
+    heed = (
+        "import os, signal, sys; signal.signal(signal.SIGINT, signal.SIG_DFL); "
+        "os.execv(sys.argv[1], sys.argv[1:])"
+    )
     command = [sys.executable, "-m", "gyrify.cli", "animate", str(runs["linear"]), "--out", str(target)]
+    command = [sys.executable, "-S", "-c", heed, *command, "--width", "2000"]
     for _ in range(6):  # it may be done before the signal comes
         target.unlink(missing_ok=True)
-        with subprocess.Popen([*command, "--width", "2000"], stderr=subprocess.PIPE, text=True) as process:
+        with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
             end = time.monotonic() + 60.0
             while not list(tmp_path.iterdir()) and process.poll() is None and time.monotonic() < end:
                 time.sleep(0.005)

@@ -104,6 +104,7 @@ def test_a_thumbnail_opens_its_run(opened, folder: Path) -> None:
     shown = float(re.match(r"[\d.]+", tip).group())
     assert shown == pytest.approx(values[0, 10], abs=2e-3 * np.ptp(values))
     opened.page.keyboard.press("Escape")
+    opened.wait("document.querySelector('dialog') === null")
     assert opened.page.locator("dialog").count() == 0
 
 

@@ -94,6 +94,22 @@ def test_late_steps_use_the_old_factor_and_its_secants() -> None:
     assert end.stats.factorizations < end.stats.newton_iterations <= 8
 
 
+def test_direction_is_that_of_the_dense_update(rng: np.random.Generator) -> None:
+    """H <- (I - rho s y^T) H (I - rho y s^T) + rho s s^T, from the identity, for two pairs."""
+    solver = SuperLU()
+    solver.analyse(np.arange(5), np.arange(4))
+    model, H = QuasiNewton(), np.eye(4)
+    model.renew(solver.factorise(np.ones(4)))
+    for _ in range(2):
+        s = rng.standard_normal(4)
+        y = 2.0 * s + 0.3 * rng.standard_normal(4)
+        model.learn(s, y, 0.5)
+        shear = np.eye(4) - np.outer(s, y) / (s @ y)
+        H = shear @ H @ shear.T + np.outer(s, s) / (s @ y)
+    gradient = rng.standard_normal(4)
+    assert model.direction(gradient) == pytest.approx(-H @ gradient)
+
+
 def test_secant_pairs_make_the_direction_exact_for_what_they_saw() -> None:
     """The factor is the identity, the Hessian diag(4, 1): after a step along x the direction is Newton's."""
     solver = SuperLU()
