@@ -11,11 +11,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from stored import journal_bytes, tiny_config
 from target import Target
 
-from gyrify.errors import HistoryError
 from gyrify.store import History, Journal
 from gyrify.store.journal import _digest, _sealed
 from gyrify.study import final_state, read_results
@@ -164,30 +162,9 @@ def _archive(data: bytes) -> bytes:
     return buffer.getvalue()
 
 
-def _derived(folder: Path) -> Callable[[bytes], object]:
-    """``history.vtkhdf`` is checked against its digest before anything opens it as HDF5."""
-    from gyrify.store.derived import require_digest
-
-    whole = np.random.default_rng(1).bytes(4096)
-    file = folder / "history.vtkhdf"
-
-    def read(data: bytes) -> None:
-        changed = _patched(whole, data)
-        file.write_bytes(changed)
-        try:
-            require_digest(file, sha256(whole))
-        except HistoryError:
-            assert changed != whole
-            raise
-        assert changed == whole
-
-    return read
-
-
 TARGETS = (
     Target("journal", "`journal.sqlite`, damaged", _journal),
     Target("history", "`journal.sqlite`, forged with right digests", _history),
     Target("results", "`results.parquet`", _results),
     Target("final", "`final.npz`, forged with a right checksum", _final),
-    Target("derived", "`history.vtkhdf`, by its digest", _derived),
 )
