@@ -1,7 +1,8 @@
 """HDF5 opens a file in a process of its own, so that a crash of the library is counted and not suffered.
 
 Run as a program, this is that process: it reads names of files, one a line, and answers each with one line.
-It has little memory, may write nothing, and is ended when an answer takes too long.
+It has little memory, may write nothing, and is ended by a signal when an answer takes more than `TIME_LIMIT`
+of the processor.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import resource
 import select
+import signal
 import subprocess
 import sys
 import time
@@ -18,7 +20,8 @@ from typing import Final
 from guard import Outcome
 
 ROOM: Final = 2**29
-TIME_LIMIT: Final = 10.0
+TIME_LIMIT: Final = 5.0
+LONGEST_WAIT: Final = 120.0
 # After so many files a new process begins, so that none suffers from what others left behind.
 _FILES: Final = 1000
 _READY: Final = "ready"
@@ -40,13 +43,13 @@ class Opener:
     ----------
     command : sequence of str, optional
         The process; this module by default.
-    limit : float
-        Longest time of an answer [s].
+    longest : float
+        Longest time to wait for an answer [s].
     """
 
-    def __init__(self, command: tuple[str, ...] = (), limit: float = TIME_LIMIT) -> None:
+    def __init__(self, command: tuple[str, ...] = (), longest: float = LONGEST_WAIT) -> None:
         self.command = command or (sys.executable, "-W", "ignore", str(Path(__file__)))
-        self.limit = limit
+        self.longest = longest
         self._process: subprocess.Popen[str] | None = None
         self._opened = 0
 
@@ -74,14 +77,15 @@ class Opener:
         with contextlib.suppress(BrokenPipeError):
             process.stdin.write(f"{path}\n")
             process.stdin.flush()
-        answer = self._answer(process, self.limit)
+        answer = self._answer(process, self.longest)
         seconds = time.perf_counter() - begun
         if answer:
             kind, _, told = answer.partition(" ")
             return Opened(kind, told, seconds)
-        status = process.poll() if answer is None else process.wait()
+        status = process.wait() if answer == "" else None
         self._end()
-        return Opened("hang", "", seconds) if status is None else Opened("crash", f"exit {status}", seconds)
+        kind = "hang" if status in (None, -signal.SIGPROF) else "crash"
+        return Opened(kind, f"exit {status}", seconds)
 
     def _running(self) -> subprocess.Popen[str]:
         self._opened += 1
@@ -148,6 +152,7 @@ def main() -> None:
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     print(_READY, flush=True)
     for line in sys.stdin:
+        signal.setitimer(signal.ITIMER_PROF, TIME_LIMIT)
         print(read_all(line.rstrip("\n")), flush=True)
 
 

@@ -82,12 +82,13 @@ def test_an_open_by_hdf5_would_be_seen(run: Path) -> None:
         ("os.kill(os.getpid(), 11)", "crash"),
         ("os._exit(0)", "crash"),
         ("time.sleep(60)", "hang"),
+        ("os.kill(os.getpid(), 27)", "hang"),
         ("print('refused OSError', flush=True)", "refused"),
     ],
 )
 def test_what_becomes_of_the_process_is_counted(answer: str, kind: str, tmp_path: Path) -> None:
     program = f"import os, time\nprint('ready', flush=True)\nwhile input():\n    {answer}"
-    with Opener((sys.executable, "-c", program), limit=1.0) as opener:
+    with Opener((sys.executable, "-c", program), longest=1.0) as opener:
         assert [opener.open(tmp_path).kind for _ in range(2)] == [kind, kind]
         assert not opener.open(tmp_path).is_fault
 
