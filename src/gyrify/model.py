@@ -128,8 +128,9 @@ class Slice(Tissue):
     def contact_energy(self, u: FloatArray) -> ContactEnergy:
         """Contact barrier for an increment that starts at a state u."""
         contact, T = self.config.contact, self.config.geometry.cortical_thickness
-        d_hat = min(contact.activation_fraction * T, 0.5 * self.surface.shortest_edge(u))
-        return ContactEnergy(self.surface, d_hat, self.barrier_stiffness)
+        shortest = self.surface.shortest_edge(u)
+        d_hat = min(contact.activation_fraction * T, 0.5 * shortest)
+        return ContactEnergy(self.surface, d_hat, self.barrier_stiffness, 0.25 * shortest)
 
     def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:
         """See `gyrify.solve.quasistatic.Problem`."""

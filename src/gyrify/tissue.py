@@ -104,6 +104,11 @@ class Tissue:
         return np.flatnonzero(is_free)
 
     @cached_property
+    def across(self) -> FloatArray:
+        """(n, n_dim) unit reference direction across the layers at each integration point."""
+        return np.asarray(self.mesh.across[self.simplices.cell])
+
+    @cached_property
     def mean_cortical_edge(self) -> float:
         """Mean length of the edges of grey cells [mm]."""
         corners = self.mesh.cell_points[self.mesh.region == GREY, :3]
@@ -113,9 +118,8 @@ class Tissue:
         """Cells in their grown state at a growth time."""
         stretch = growth_stretch(self.rate, time, self.config.growth.stretch)
         out_of_plane = out_of_plane_growth(stretch, self.config.growth.out_of_plane)
-        across = self.mesh.across[self.simplices.cell]
         return ElasticKinematics.of(
-            self.simplices, growth_tensor(stretch, self.tangential, across), out_of_plane
+            self.simplices, growth_tensor(stretch, self.tangential, self.across), out_of_plane
         )
 
     def volume_growth(self, time: float) -> FloatArray:

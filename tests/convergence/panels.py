@@ -175,6 +175,8 @@ class DeadLoad:
         value = -float(np.sum(self.forces * u))
         return Evaluation(value, -self.forces if order else None)
 
+    is_barrier = False
+
     def max_step(self, u: np.ndarray, du: np.ndarray) -> float:  # noqa: ARG002
         """No limit."""
         return 1.0

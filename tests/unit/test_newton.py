@@ -41,6 +41,8 @@ class Well:
             Hessian(DIAGONAL, np.array([stiffness, 1.0])) if order >= 2 else None,
         )
 
+    is_barrier = False
+
     def max_step(self, u: np.ndarray, du: np.ndarray) -> float:  # noqa: ARG002
         return 1.0
 
@@ -72,6 +74,19 @@ def test_a_shift_by_the_mass_finds_the_same_minimum(mass: float) -> None:
     solution = minimise(total, start, system(), criterion, lambda _: NONE, lambda: None, masses)
     assert solution.result is Result.CONVERGED
     assert solution.u == pytest.approx(np.array([[2.0, 0.0]]), abs=1e-12)
+
+
+@pytest.mark.parametrize("is_barrier", [True, False])
+def test_barriers_are_projected_before_anything_is_shifted(is_barrier: bool) -> None:
+    """The projection |3 x^2 - 4| = 3.97 at 0.1 gives the step (4 x - x^3) / 3.97 towards the minimum."""
+    well, start = Well(4.0), np.array([[0.1, 0.0]])
+    well.is_barrier = is_barrier
+    criterion = Criterion(1e-12, 1)
+    solution = minimise(
+        TotalEnergy([well]), start, system(), criterion, lambda _: NONE, lambda: None, np.full(2, 0.1)
+    )
+    assert solution.stats.factorizations == 2 if is_barrier else solution.stats.factorizations > 2
+    assert (solution.u[0, 0] == pytest.approx(0.1 + 0.399 / 3.97, rel=1e-12)) == is_barrier
 
 
 def test_convergence_is_quadratic() -> None:

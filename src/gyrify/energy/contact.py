@@ -17,6 +17,7 @@ import ipctk
 import numpy as np
 
 from gyrify.energy.images import Polyline, share_pairs
+from gyrify.energy.neighbourhood import Neighbourhood
 from gyrify.energy.term import Evaluation, FloatArray, Hessian, IntArray, Pattern
 
 # ipctk sums over threads; one thread makes the sum, and so the run, reproducible.
@@ -68,12 +69,6 @@ class ContactSurface:
         """(n_vertices, 2) deformed vertices [mm] in the Fortran order that ipctk wants."""
         return np.asfortranarray(self.reference + u[self.source])
 
-    def collision_free_step(self, u: FloatArray, du: FloatArray) -> float:
-        """Fraction of du, at most 1, along which the contour meets itself nowhere."""
-        start = self.vertices(u)
-        end = np.asfortranarray(start + du[self.source])
-        return float(ipctk.compute_collision_free_stepsize(self.mesh, start, end))
-
     def is_path_collision_free(self, u: FloatArray, u_end: FloatArray) -> bool:
         """Whether the straight path between two states is free of crossings."""
         return bool(ipctk.is_step_collision_free(self.mesh, self.vertices(u), self.vertices(u_end)))
@@ -106,18 +101,26 @@ class ContactEnergy:
         Activation distance [mm]; below the shortest edge, so that neighbours do not repel.
     barrier_stiffness : float
         k_b [Pa].
+    reach : float, optional
+        Motion of a vertex for which pairs are searched in advance [mm]; what costs least is a part of the
+        shortest edge. By default the activation distance.
     """
 
-    def __init__(self, surface: ContactSurface, d_hat: float, barrier_stiffness: float) -> None:
+    is_barrier = True
+
+    def __init__(
+        self, surface: ContactSurface, d_hat: float, barrier_stiffness: float, reach: float | None = None
+    ) -> None:
         self.surface = surface
         self.d_hat = d_hat
+        self._near = Neighbourhood(surface.mesh, d_hat, d_hat if reach is None else reach)
         self._barrier = ipctk.BarrierPotential(d_hat, barrier_stiffness, True)
 
     def _collisions(self, vertices: FloatArray) -> ipctk.NormalCollisions:
         collisions = ipctk.NormalCollisions()
         collisions.use_area_weighting = True
         collisions.collision_set_type = ipctk.NormalCollisions.IMPROVED_MAX_APPROX
-        collisions.build(self.surface.mesh, vertices, self.d_hat)
+        collisions.build(self._near.pairs(vertices), self.surface.mesh, vertices, self.d_hat)
         if self.surface.is_periodic:
             share_pairs(collisions, self.surface.contour.size)
         return collisions
@@ -140,7 +143,8 @@ class ContactEnergy:
 
     def max_step(self, u: FloatArray, du: FloatArray) -> float:
         """Largest safe fraction of du, at most 1: the path up to it is free of crossings."""
-        step = self.surface.collision_free_step(u, du)
+        start = self.surface.vertices(u)
+        step = self._near.collision_free_step(start, np.asfortranarray(start + du[self.surface.source]))
         return 1.0 if step >= 1.0 else SAFETY * step
 
     def _hessian(

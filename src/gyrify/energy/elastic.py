@@ -48,6 +48,8 @@ class ElasticEnergy:
         Sparsity of the mesh.
     """
 
+    is_barrier = False
+
     def __init__(
         self,
         kinematics: ElasticKinematics,

@@ -23,8 +23,9 @@ from gyrify.energy.lanes import (
     gather,
     invariants,
     load,
-    nodal_vectors,
+    products,
     step_to_inversion,
+    store,
     weigh_moduli,
 )
 from gyrify.energy.lanes import invert as invert_all
@@ -99,7 +100,8 @@ def _accumulate(n_dim: int, n_nodes: int, digest: int) -> Any:
             if order == 0:
                 continue
             weigh_moduli(first, n, I1, J, root, mu, kappa, pressure, weight, moduli)
-            nodal_vectors(n_dim, n_nodes, n, F, H, g, f, h)
+            products(n_dim, n_nodes, n, F, g, f)
+            products(n_dim, n_nodes, n, H, g, h)
             add_forces(n_dim, n_nodes, first, n, f, h, moduli, cells, gradient)
             if order == 2 and project_psd:
                 add_projected(n_dim, n_nodes, first, n, F, H, g, moduli, position, values)
@@ -145,17 +147,21 @@ def _grow(n_dim: int, n_nodes: int, digest: int) -> Any:
     @njit(cache=True, error_model="numpy")
     def grow(F_g, gradients, base, grown, det):  # type: ignore[no-untyped-def]
         """Write F_g^{-1}, the gradients with respect to the grown cell, and det F_g in the plane."""
-        H = np.empty((n_dim + 0 * digest, n_dim))
-        for c in range(F_g.shape[0]):
-            det[c] = invert(n_dim, F_g[c], H)
-            for i in range(n_dim):
-                for j in range(n_dim):
-                    base[c, i, j] = H[j, i]
-            for a in range(n_nodes):
-                for j in range(n_dim):
-                    grown[c, a, j] = 0.0
-                    for i in range(n_dim):
-                        grown[c, a, j] += gradients[c, a, i] * base[c, i, j]
+        g, h = np.empty((n_nodes, n_dim, LANES)), np.empty((n_nodes, n_dim, LANES))
+        F, H = np.empty((n_dim + 0 * digest, n_dim, LANES)), np.empty((n_dim, n_dim, LANES))
+        volume = np.empty(LANES)
+        for first in range(0, F_g.shape[0], LANES):
+            n = min(LANES, F_g.shape[0] - first)
+            load(n_dim, n_dim, first, n, F_g, F)
+            load(n_nodes, n_dim, first, n, gradients, g)
+            invert_all(n_dim, n, F, H, volume)
+            products(n_dim, n_nodes, n, H, g, h)
+            store(n_nodes, n_dim, first, n, h, grown)
+            for l in range(n):
+                det[first + l] = volume[l]
+                for i in range(n_dim):
+                    for j in range(n_dim):
+                        base[first + l, i, j] = H[j, i, l]
 
     return grow
 

@@ -42,6 +42,15 @@ def load(n_rows, n_columns, first, n, matrices, M):
 
 
 @njit(cache=True, inline="always")
+def store(n_rows, n_columns, first, n, M, matrices):
+    """The reverse of `load`."""
+    for l in range(n):
+        for i in range(n_rows):
+            for j in range(n_columns):
+                matrices[first + l, i, j] = M[i, j, l]
+
+
+@njit(cache=True, inline="always")
 def add_products(n_dim, n_nodes, n, x, g, F):
     """Add sum_a x_a (x) g_a."""
     for i in range(n_dim):
@@ -58,8 +67,9 @@ def invert(n_dim, n, F, H, det):
     for l in range(n):
         if n_dim == 2:
             det[l] = F[0, 0, l] * F[1, 1, l] - F[0, 1, l] * F[1, 0, l]
-            H[0, 0, l], H[0, 1, l] = F[1, 1, l] / det[l], -F[1, 0, l] / det[l]
-            H[1, 0, l], H[1, 1, l] = -F[0, 1, l] / det[l], F[0, 0, l] / det[l]
+            inverse = 1.0 / det[l]
+            H[0, 0, l], H[0, 1, l] = F[1, 1, l] * inverse, -F[1, 0, l] * inverse
+            H[1, 0, l], H[1, 1, l] = -F[0, 1, l] * inverse, F[0, 0, l] * inverse
         else:
             for i in range(3):
                 a, b = (i + 1) % 3, (i + 2) % 3
@@ -106,8 +116,26 @@ def invariants(n_dim, first, n, F, det, f33, I1, J, root):
         for i in range(n_dim):
             for j in range(n_dim):
                 I1[l] += F[i, j, l] * F[i, j, l]
+    cube_roots(n, J, root)
+
+
+@njit(cache=True, inline="always", error_model="numpy")
+def cube_roots(n, x, root):
+    """Cube roots of positive numbers to the last digit or two.
+
+    Between 1/4 and 4 a cubic is within 2.2 % of them, and Halley's iteration, which has vector instructions
+    where the library's function has none, makes that 7e-6 and then 3e-16.
+    """
+    is_near = True
     for l in range(n):
-        root[l] = np.cbrt(J[l])
+        is_near &= 0.25 <= x[l] <= 4.0
+    for l in range(n):
+        y = 0.48689039 + x[l] * (0.67161651 + x[l] * (0.02062432 * x[l] - 0.1808009))
+        y *= (y * y * y + 2.0 * x[l]) / (2.0 * y * y * y + x[l])
+        root[l] = y * (y * y * y + 2.0 * x[l]) / (2.0 * y * y * y + x[l])
+    if not is_near:
+        for l in range(n):
+            root[l] = np.cbrt(x[l])
 
 
 @njit(cache=True, inline="always")
@@ -133,16 +161,15 @@ def weigh_moduli(first, n, I1, J, root, mu, kappa, pressure, weight, moduli):
 
 
 @njit(cache=True, inline="always")
-def nodal_vectors(n_dim, n_nodes, n, F, H, g, f, h):
-    """f_a = F g_a and h_a = H g_a."""
+def products(n_dim, n_nodes, n, M, g, m):
+    """m_a = M g_a."""
     for a in range(n_nodes):
         for i in range(n_dim):
             for l in range(n):
-                along_F, along_H = 0.0, 0.0
+                total = 0.0
                 for j in range(n_dim):
-                    along_F += F[i, j, l] * g[a, j, l]
-                    along_H += H[i, j, l] * g[a, j, l]
-                f[a, i, l], h[a, i, l] = along_F, along_H
+                    total += M[i, j, l] * g[a, j, l]
+                m[a, i, l] = total
 
 
 @njit(cache=True, inline="always")

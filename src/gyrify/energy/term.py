@@ -56,10 +56,18 @@ class Evaluation:
 
 
 class EnergyTerm(Protocol):
-    """One summand of the total energy; it hides no state between calls.
+    """One summand of the total energy; what it keeps between calls saves time and changes no result.
 
     A state u is an (n_points, n_dim) float array of displacements [mm].
+
+    Attributes
+    ----------
+    is_barrier : bool
+        Whether it only keeps things apart: few entries, and a curvature that is negative where they turn
+        about each other.
     """
+
+    is_barrier: bool
 
     def evaluate(self, u: FloatArray, order: int, project_psd: bool = False) -> Evaluation:
         """Energy (order 0), with gradient (1), with Hessian (2), optionally projected per cell or pair."""

@@ -100,6 +100,17 @@ class TotalEnergy:
         """Each term with its Hessian, for the solver to sum on a pattern that holds them all."""
         return [term.evaluate(u, 2, project_psd) for term in self.terms]
 
+    def project_barriers(self, u: FloatArray, evaluations: Sequence[Evaluation]) -> list[Evaluation] | None:
+        """The same with the Hessians of barriers projected; None where no barrier acts."""
+        acting = [
+            term.is_barrier and known.hessian is not None and known.hessian.values.size > 0
+            for term, known in zip(self.terms, evaluations, strict=True)
+        ]
+        if not any(acting):
+            return None
+        both = zip(self.terms, evaluations, acting, strict=True)
+        return [term.evaluate(u, 2, True) if acts else known for term, known, acts in both]
+
     def max_step(self, u: FloatArray, du: FloatArray) -> float:
         """Largest fraction of du, at most 1, that every term admits."""
         step = 1.0

@@ -26,6 +26,8 @@ class DragEnergy:
         Displacement at the start of the increment [mm].
     """
 
+    is_barrier = False
+
     def __init__(self, coefficient: float, lumped_area: FloatArray, previous: FloatArray) -> None:
         self.weight = coefficient * lumped_area
         self.previous = previous
@@ -70,6 +72,8 @@ class KelvinVoigtEnergy:
     pattern : CellPattern
         Sparsity of the mesh.
     """
+
+    is_barrier = False
 
     def __init__(
         self,

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from gyrify.energy.term import Evaluation
 from gyrify.energy.total import TotalEnergy
 from gyrify.errors import SolveError
 from gyrify.solve.linear import Factor
@@ -156,15 +157,27 @@ def _definite_factor(
     candidates: Callable[[FloatArray], IntArray],
     mass: FloatArray | None,
 ) -> Factor:
-    """Factor of the exact Hessian, or of the projected or shifted one where that is indefinite."""
-    data = system.assemble(total.evaluate(u, project_psd=False), lambda: candidates(u))
+    """Factor of the exact Hessian, or of the projected or shifted one where that is indefinite.
+
+    Barriers are projected first: often nothing else is needed, and their negative curvature, far larger than
+    that of the tissue, would take a shift that stops all motion.
+    """
+
+    def assembled(evaluations: Sequence[Evaluation]) -> FloatArray:
+        return system.assemble(evaluations, lambda: candidates(u))
+
+    exact = total.evaluate(u, project_psd=False)
+    data = assembled(exact)
     factor = system.factorise_definite(data)
     if factor is not None:
         return factor
-    if mass is not None:
-        return shifted_factor(system, data, mass, growth=4.0)
-    data = system.assemble(total.evaluate(u, project_psd=True), lambda: candidates(u))
-    return system.factorise_data(data)
+    if mass is None:
+        return system.factorise_data(assembled(total.evaluate(u, project_psd=True)))
+    barriers_projected = total.project_barriers(u, exact)
+    if barriers_projected is not None:
+        data = assembled(barriers_projected)
+        factor = system.factorise_definite(data)
+    return factor or shifted_factor(system, data, mass, growth=4.0)
 
 
 def _line_search(
