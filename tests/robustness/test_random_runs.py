@@ -41,7 +41,7 @@ def test_there_are_thirty_and_every_kind_is_among_them() -> None:
         "shape": {config.geometry.shape for config in configs},
         "element": {config.mesh.element for config in configs},
         "dissipation": {config.dissipation.kind for config in configs if config.dissipation.number > 0.0},
-        "none": {config.dissipation.number > 0.0 for config in configs},
+        "dissipates": {config.dissipation.number > 0.0 for config in configs},
         "contact": {config.contact.enabled for config in configs},
     }
     assert {name: len(found) for name, found in kinds.items()} == {
