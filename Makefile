@@ -1,9 +1,10 @@
 # make run: fold the standard slice.  make test: everything that must hold.
 PYTHON ?= python3
 VENV ?= .venv
+NEWEST ?= .venv-newest
 BIN = $(VENV)/bin
 
-.PHONY: run test check slow mutants docs bench clean
+.PHONY: run test check slow newest mutants docs bench clean
 
 run: $(VENV)/.run
 	$(BIN)/gyrify run --preset reference-slice --out runs/reference-slice --overwrite
@@ -16,6 +17,13 @@ test: $(VENV)/.test
 
 slow: $(VENV)/.test
 	$(BIN)/python -m pytest -m slow -n auto
+
+# the newest versions of all dependencies, without the pins: PYTHON=python3.13 make newest
+newest:
+	$(PYTHON) -m venv --clear $(NEWEST)
+	$(NEWEST)/bin/python -m pip install --quiet --disable-pip-version-check \
+	  --upgrade --upgrade-strategy eager -e ".[fast,test,docs]"
+	$(NEWEST)/bin/python -m pytest -m "not slow" -n auto
 
 docs: $(VENV)/.docs
 	$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build
@@ -46,4 +54,4 @@ bench: $(VENV)/.venv
 	$(BIN)/python benchmarks $(BENCH)
 
 clean:
-	rm -rf $(VENV) .venv-plain benchmarks/.venv docs/_build
+	rm -rf $(VENV) $(NEWEST) .venv-plain benchmarks/.venv docs/_build

@@ -15,7 +15,7 @@ def roots(x, found):
     lanes.cube_roots(x.size, x, found)
 
 
-@pytest.mark.parametrize("low, high", [(0.25, 4.0), (0.9, 1.1), (1e-6, 1e6), (3.9, 4.1), (1e-300, 1e300)])
+@pytest.mark.parametrize(("low", "high"), [(0.25, 4.0), (0.9, 1.1), (1e-6, 1e6), (3.9, 4.1), (1e-300, 1e300)])
 def test_cube_roots_are_right_to_the_last_digits(low: float, high: float) -> None:
     x = np.geomspace(low, high, 1000)
     found = np.empty_like(x)
