@@ -12,7 +12,7 @@ import h5py
 import pytest
 from guard import is_clear
 from stored import TINY, journal_bytes
-from stored_targets import _seal
+from stored_targets import _archive, _seal
 
 import gyrify
 from gyrify.cli import main
@@ -22,7 +22,7 @@ from gyrify.store import History, Journal
 from gyrify.store.derived import read_metrics, read_summary
 from gyrify.store.lock import has_owner, run_lock
 from gyrify.study import final_state, read_results
-from gyrify.study.archive import read_record
+from gyrify.study.archive import FinalState, read_record
 from gyrify.verify import verify
 
 
@@ -163,6 +163,16 @@ def test_a_key_that_leads_out_of_a_study_is_refused(tmp_path: Path) -> None:
         read_results(tmp_path)
     with pytest.raises(HistoryError, match="no whole run"):
         final_state(tmp_path, "../../else")
+
+
+@pytest.mark.parametrize(
+    ("descr", "shape"), [("'<f8'", "(3, False)"), ("()", "(3,)"), ("[1]", "(3,)"), ("'<f8'", "(-1,)")]
+)
+def test_arrays_described_wrongly_are_refused(tmp_path: Path, descr: str, shape: str) -> None:
+    header = f"{{'descr': {descr}, 'fortran_order': False, 'shape': {shape}, }}"
+    (tmp_path / "final.npz").write_bytes(_archive(f"displacement.npy|{header}|24".encode()))
+    with pytest.raises(HistoryError, match="damaged"):
+        FinalState.load(tmp_path / "final.npz")
 
 
 def test_terminals_get_no_commands_from_a_file(run: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -36,7 +36,9 @@ FINAL: Final = "final.npz"
 _UNREADABLE: Final = (
     OSError,
     ValueError,
-    KeyError,
+    LookupError,
+    TypeError,
+    AttributeError,
     EOFError,
     SyntaxError,
     MemoryError,
