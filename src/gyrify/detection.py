@@ -14,7 +14,7 @@ from gyrify.mesh.waves import dominant_wave, normal_displacement
 from gyrify.model import Slice
 from gyrify.solve.branch import settle
 from gyrify.solve.equilibrium import find_equilibrium
-from gyrify.solve.quasistatic import State, Stepping
+from gyrify.solve.problem import State, Stepping
 from gyrify.solve.result import Result
 from gyrify.solve.stability import Eigenpair, Onset, Tangent
 from gyrify.solve.system import System

@@ -15,8 +15,8 @@ from gyrify.energy.viscous import DragEnergy, KelvinVoigtEnergy, green_lagrange
 from gyrify.meshing import build_mesh
 from gyrify.solve.linear import linear_solver
 from gyrify.solve.newton import Criterion
+from gyrify.solve.problem import State, Stepping
 from gyrify.solve.quasi_newton import STEPS
-from gyrify.solve.quasistatic import State, Stepping
 from gyrify.solve.stability import Tangent
 from gyrify.solve.system import System
 from gyrify.tissue import Tissue
@@ -74,22 +74,22 @@ class Slice(Tissue):
 
     @property
     def shift_mass(self) -> FloatArray | None:
-        """See `gyrify.solve.quasistatic.Problem`: the mass, unless a projection is asked for."""
+        """See `gyrify.solve.problem.Problem`: the mass, unless a projection is asked for."""
         return self.free_mass if self.config.solver.regularisation == "shift" else None
 
     @property
     def old_steps(self) -> int:
-        """See `gyrify.solve.quasistatic.Problem`: without dissipation they might end on a saddle."""
+        """See `gyrify.solve.problem.Problem`: without dissipation they might end on a saddle."""
         return 0 if self.is_conservative else STEPS
 
     @property
     def may_jump(self) -> bool:
-        """See `gyrify.solve.quasistatic.Problem`: without dissipation tissue snaps from state to state."""
+        """See `gyrify.solve.problem.Problem`: without dissipation tissue snaps from state to state."""
         return self.is_conservative
 
     @property
     def is_path_kept(self) -> bool:
-        """See `gyrify.solve.quasistatic.Problem`: a bifurcation is to be seen, and nothing unfolds it."""
+        """See `gyrify.solve.problem.Problem`: a bifurcation is to be seen, and nothing unfolds it."""
         stability, is_perfect = self.config.stability, self.config.mesh.node_jitter == 0.0
         return self.is_conservative and stability.detect and (stability.follow_branch or is_perfect)
 
@@ -133,7 +133,7 @@ class Slice(Tissue):
         return ContactEnergy(self.surface, d_hat, self.barrier_stiffness, 0.25 * shortest)
 
     def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:
-        """See `gyrify.solve.quasistatic.Problem`."""
+        """See `gyrify.solve.problem.Problem`."""
         duration = self.config.growth.duration
         kinematics = self.kinematics(fraction * duration)
         terms: list[EnergyTerm] = [self.elastic_energy(kinematics)]
@@ -143,7 +143,7 @@ class Slice(Tissue):
         return TotalEnergy(terms)
 
     def system(self, couplings: IntArray) -> System:
-        """See `gyrify.solve.quasistatic.Problem`."""
+        """See `gyrify.solve.problem.Problem`."""
         pattern = self.pattern.pattern if self.patches is None else self.patches.pattern
         solver = linear_solver(self.config.solver.linear_solver)
         return System(self.free, int(np.prod(self.state_shape)), self.mesh.n_dim, pattern, solver, couplings)
@@ -153,7 +153,7 @@ class Slice(Tissue):
         return self.surface.couplings(u, REACH * self.surface.shortest_edge(u))
 
     def is_path_admissible(self, u: FloatArray, u_end: FloatArray) -> bool:
-        """See `gyrify.solve.quasistatic.Problem`."""
+        """See `gyrify.solve.problem.Problem`."""
         return not self.config.contact.enabled or self.surface.is_path_collision_free(u, u_end)
 
     def _dissipation(

@@ -25,7 +25,7 @@ import numpy as np
 from gyrify.energy.contact import ContactEnergy
 from gyrify.energy.elastic import ElasticEnergy
 from gyrify.model import Slice
-from gyrify.solve.quasistatic import State
+from gyrify.solve.problem import State
 from gyrify.solve.types import FloatArray
 from gyrify.store.history import History
 

@@ -12,7 +12,8 @@ from gyrify.errors import GyrifyError, HistoryError, LimitReachedError, SolveErr
 from gyrify.limits import Watch
 from gyrify.model import Slice
 from gyrify.solve.linear import linear_solver
-from gyrify.solve.quasistatic import State, grow
+from gyrify.solve.problem import State
+from gyrify.solve.quasistatic import grow
 from gyrify.store.history import History
 from gyrify.store.journal import Journal
 
@@ -158,10 +159,10 @@ class Run:
             self._limits()
 
         detector = Detector(problem, stepping, self.journal.onset is not None, self.journal.state, look)
-        inspect = (detector.inspect,) if problem.config.stability.detect else ()
+        inspect = detector.inspect if problem.config.stability.detect else lambda _, accepted: accepted
         clock = begun
         try:
-            for accepted in grow(problem, stepping, state, look, *inspect):
+            for accepted in grow(problem, stepping, state, look, inspect, self.journal.state):
                 now = time.perf_counter()
                 self.journal.append(accepted, now - clock, detector.n_negative, detector.onset)
                 clock = now

@@ -10,7 +10,7 @@ from gyrify.energy.viscous import DragEnergy, KelvinVoigtEnergy
 from gyrify.mesh import GREY, WHITE
 from gyrify.model import Slice
 from gyrify.physics.neo_hookean import lame_parameters
-from gyrify.solve.quasistatic import State
+from gyrify.solve.problem import State
 
 
 def problem(tiny: Config, **overrides) -> Slice:

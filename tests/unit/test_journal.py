@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from gyrify.errors import HistoryError
-from gyrify.solve.quasistatic import State
+from gyrify.solve.problem import State
 from gyrify.store import History, Journal
 from gyrify.store.database import transaction
 

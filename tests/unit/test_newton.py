@@ -13,8 +13,9 @@ from gyrify.energy.total import FreePattern, TotalEnergy
 from gyrify.errors import SolveError
 from gyrify.solve.linear import SuperLU
 from gyrify.solve.newton import Criterion, minimise
+from gyrify.solve.problem import TICKS, State, Stepping
 from gyrify.solve.quasi_newton import QuasiNewton
-from gyrify.solve.quasistatic import TICKS, State, Stepping, grow
+from gyrify.solve.quasistatic import grow
 from gyrify.solve.result import Result
 from gyrify.solve.system import System
 
@@ -197,7 +198,10 @@ def test_every_result_says_what_happened_and_what_to_try() -> None:
 
 @dataclass
 class Pull:
-    """A problem whose solution is x = 10 x growth; paths longer than ``longest`` count as crossing."""
+    """A problem whose solution is x = 10 x growth; paths longer than ``longest`` count as crossing.
+
+    At the k-th of twelve increments the solution is off by ``wobble`` sin k.
+    """
 
     longest: float = np.inf
     refuses_after: float = np.inf
@@ -205,9 +209,11 @@ class Pull:
     old_steps: int = 0
     is_path_kept: bool = False
     may_jump: bool = False
+    wobble: float = 0.0
 
     def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:  # noqa: ARG002
-        goal, dead = 10.0 * fraction, fraction > self.refuses_after
+        goal = 10.0 * fraction + self.wobble * np.sin(12.0 * fraction)
+        dead = fraction > self.refuses_after
 
         class Spring(Well):
             def evaluate(self, u, order, project_psd=False):  # noqa: ARG002

@@ -77,6 +77,7 @@ def test_an_increment_depends_on_stored_state_alone(folded: History) -> None:
 
     number = len(folded) - 2
     problem = Slice(folded.config)
-    following = next(iter(grow(problem, problem.stepping, folded.journal.state(number))))
+    recall = folded.journal.state
+    following = next(iter(grow(problem, problem.stepping, recall(number), recall=recall)))
     assert following.couplings.size > 0
     assert np.array_equal(following.u, folded.displacement(number + 1))

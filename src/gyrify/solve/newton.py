@@ -11,7 +11,7 @@ from gyrify.energy.term import Evaluation
 from gyrify.energy.total import TotalEnergy
 from gyrify.errors import SolveError
 from gyrify.solve.linear import Factor
-from gyrify.solve.quasi_newton import STEPS, QuasiNewton
+from gyrify.solve.quasi_newton import QuasiNewton
 from gyrify.solve.result import Result, Solution, Stats
 from gyrify.solve.shift import shifted_factor
 from gyrify.solve.system import System
@@ -76,7 +76,7 @@ def minimise(
     candidates: Callable[[FloatArray], IntArray],
     watch: Callable[[], None] = lambda: None,
     mass: FloatArray | None = None,
-    old_steps: int = STEPS,
+    model: QuasiNewton | None = None,
 ) -> Solution:
     """Minimise the total energy from a starting state.
 
@@ -97,8 +97,8 @@ def minimise(
     mass : (n_free,) float array, optional
         Lumped area [mm^2]: an indefinite Hessian is then shifted by a multiple of it instead of projected,
         which is what leads along the flat valleys of a tissue that buckles without dissipation.
-    old_steps : int
-        How many steps with an old Hessian are worth trying; see `QuasiNewton`.
+    model : QuasiNewton, optional
+        A factor from before to begin with; left with the latest one.
 
     Returns
     -------
@@ -106,7 +106,7 @@ def minimise(
     """
     before = (system.factorizations, system.analyses)
     at = start if isinstance(start, Iterate) else Iterate.at(total, start, system)
-    model = QuasiNewton(old_steps)
+    model = model or QuasiNewton()
     # MAX_NEWTON is what it comes to unless something else happens first.
     result, iteration = Result.MAX_NEWTON if np.isfinite(at.value) else Result.INADMISSIBLE, 0
     while result is Result.MAX_NEWTON:
@@ -119,7 +119,7 @@ def minimise(
         is_old = model.serves(at.residual, criterion.force)
         try:
             if not is_old:
-                model.renew(_definite_factor(total, at.u, system, candidates, mass))
+                model.renew(definite_factor(total, at.u, system, candidates, mass))
             at, result = _step(total, at, model, system)
         except SolveError:
             result = Result.SINGULAR
@@ -150,7 +150,7 @@ def largest_force(gradient: FloatArray, system: System) -> float:
     return float(np.sqrt(np.einsum("pi,pi->p", by_point, by_point).max()))
 
 
-def _definite_factor(
+def definite_factor(
     total: TotalEnergy,
     u: FloatArray,
     system: System,

@@ -18,6 +18,8 @@ from gyrify.solve.types import FloatArray
 
 # Steps with an old factor that are worth trying before a new one.
 STEPS = 8
+# Contraction expected of the first step with a factor of an earlier increment.
+CARRIED_CONTRACTION = 0.55
 
 
 @dataclass
@@ -46,6 +48,11 @@ class QuasiNewton:
     def renew(self, factor: Factor | None) -> None:
         """Take a new factor, or none."""
         self.factor, self.contraction = factor, 1.0
+        self._pairs.clear()
+
+    def carry(self) -> None:
+        """Keep the factor for another problem near by; what was learnt of this one is forgotten."""
+        self.contraction = CARRIED_CONTRACTION
         self._pairs.clear()
 
     def direction(self, gradient: FloatArray) -> FloatArray:

@@ -65,6 +65,14 @@ class Stats:
             self.rejected + other.rejected,
         )
 
+    def __sub__(self, other: Stats) -> Stats:
+        return Stats(
+            self.newton_iterations - other.newton_iterations,
+            self.factorizations - other.factorizations,
+            self.analyses - other.analyses,
+            self.rejected - other.rejected,
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class Solution:

@@ -14,7 +14,7 @@ from gyrify.config import Config
 from gyrify.errors import HistoryError
 from gyrify.mesh import Mesh
 from gyrify.model import Slice
-from gyrify.solve.quasistatic import TICKS
+from gyrify.solve.problem import TICKS
 from gyrify.solve.result import Stats
 from gyrify.solve.stability import Onset
 from gyrify.solve.types import FloatArray

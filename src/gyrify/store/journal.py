@@ -18,7 +18,7 @@ from typing import Any, Final
 import numpy as np
 
 from gyrify.errors import HistoryError
-from gyrify.solve.quasistatic import State
+from gyrify.solve.problem import State
 from gyrify.solve.result import Stats
 from gyrify.solve.stability import Onset
 from gyrify.solve.types import FloatArray

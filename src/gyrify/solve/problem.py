@@ -1,0 +1,133 @@
+"""What is solved: accepted states, how growth is divided, and what the driver needs to know of the tissue."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, Protocol
+
+import numpy as np
+
+from gyrify.energy.total import TotalEnergy
+from gyrify.solve.newton import Criterion
+from gyrify.solve.result import Stats
+from gyrify.solve.system import System
+from gyrify.solve.types import FloatArray, IntArray
+
+# A nominal increment is this many ticks: growth time is an integer, so halving and resuming are exact.
+TICKS: Final = 2**20
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """An accepted increment, with all that the next one depends on.
+
+    Attributes
+    ----------
+    index : int
+        Number of the increment; 0 is the reference state.
+    position : int
+        Growth time in ticks.
+    u : (n_points, n_dim) float array
+        Displacement [mm].
+    span : int
+        Ticks of the increment that led here.
+    u_before : (n_points, n_dim) float array
+        Displacement at its start [mm].
+    next_span : int
+        Ticks of the increment to try next.
+    couplings : (n_pairs, 2) int array
+        Point pairs in the sparsity pattern because of contact.
+    residual : float
+        Largest nodal force [Pa mm].
+    stats : Stats
+        Work since the start of the run.
+    """
+
+    index: int
+    position: int
+    u: FloatArray
+    span: int
+    u_before: FloatArray
+    next_span: int
+    couplings: IntArray
+    residual: float
+    stats: Stats
+
+    @staticmethod
+    def reference(n_points: int, n_dim: int) -> State:
+        """Undeformed state at growth time zero."""
+        zero = np.zeros((n_points, n_dim))
+        return State(0, 0, zero, TICKS, zero, TICKS, np.empty((0, 2), dtype=np.int64), 0.0, Stats())
+
+
+class Problem(Protocol):
+    """What the driver needs to know of the tissue."""
+
+    @property
+    def shift_mass(self) -> FloatArray | None:
+        """Diagonal of the mass that indefinite Hessians are shifted by; None to project them."""
+        ...
+
+    @property
+    def old_steps(self) -> int:
+        """How many steps with an old Hessian are worth trying; see `QuasiNewton`."""
+        ...
+
+    @property
+    def is_path_kept(self) -> bool:
+        """Whether to stay on a branch of equilibria where it turns unstable, for `inspect` to see that."""
+        ...
+
+    @property
+    def may_jump(self) -> bool:
+        """Whether the path of states may have jumps, which no increment is small enough to resolve."""
+        ...
+
+    def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:
+        """Total energy at a fraction of the growth duration, for an increment from a state."""
+        ...
+
+    def system(self, couplings: IntArray) -> System:
+        """Linear system with couplings in its pattern."""
+        ...
+
+    def candidates(self, u: FloatArray) -> IntArray:
+        """Point pairs that contact may couple soon."""
+        ...
+
+    def is_path_admissible(self, u: FloatArray, u_end: FloatArray) -> bool:
+        """Whether the contour crosses itself nowhere on the straight path between two states."""
+        ...
+
+
+@dataclass(frozen=True)
+class Stepping:
+    """How growth is divided into increments.
+
+    Attributes
+    ----------
+    increments : int
+        Nominal number of increments.
+    min_increment : float
+        Smallest increment, as a fraction of the duration.
+    criterion : Criterion
+        When an increment has converged.
+    """
+
+    increments: int
+    min_increment: float
+    criterion: Criterion
+
+    @property
+    def end(self) -> int:
+        """Final growth time in ticks."""
+        return self.increments * TICKS
+
+    @property
+    def smallest_span(self) -> float:
+        """Smallest increment in ticks, a whole number of them at least."""
+        return max(1.0, self.min_increment * self.end)
+
+    def is_smallest(self, span: int) -> bool:
+        """Whether half of an increment would be too small."""
+        return span // 2 < self.smallest_span
