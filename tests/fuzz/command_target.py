@@ -115,8 +115,8 @@ def _command(folder: Path) -> Callable[[bytes], object]:
     def read(data: bytes) -> None:
         nonlocal count
         count += 1
-        if count % 200 == 0 or {path.name for path in inside.iterdir()} != kept:
-            shutil.rmtree(inside)
+        if count % 200 == 0 or not inside.is_dir() or {path.name for path in inside.iterdir()} != kept:
+            shutil.rmtree(inside, ignore_errors=True)
             shutil.copytree(pristine, inside, symlinks=True)
         arguments = data.decode("utf-8", "replace").replace("\0", "").split("\n")
         heard = io.StringIO()

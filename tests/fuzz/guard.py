@@ -164,22 +164,26 @@ def confined(*folders: Path) -> Iterator[None]:
 
 @contextmanager
 def time_limit(seconds: float) -> Iterator[None]:
-    """Raise Hang in what takes more time of the processor, or waits twenty times as long."""
+    """Raise Hang in what takes more time of the processor, or waits twenty times as long.
 
-    def stop(*_: object) -> None:
-        raise Hang
+    The wait is counted by alarms, of which there is but one for all the time that the process itself was stopped.
+    """
+    alarms = 0
 
-    timers = (
-        (signal.SIGPROF, signal.ITIMER_PROF, seconds),
-        (signal.SIGALRM, signal.ITIMER_REAL, 20 * seconds),
-    )
-    previous = [signal.signal(number, stop) for number, _, _ in timers]
-    for _, timer, longest in timers:
-        signal.setitimer(timer, longest)
+    def stop(number: int, _: object) -> None:
+        nonlocal alarms
+        alarms += 1
+        if number == signal.SIGPROF or alarms >= 20:
+            raise Hang
+
+    timers = ((signal.SIGPROF, signal.ITIMER_PROF), (signal.SIGALRM, signal.ITIMER_REAL))
+    previous = [signal.signal(number, stop) for number, _ in timers]
+    for _, timer in timers:
+        signal.setitimer(timer, seconds, seconds)
     try:
         yield
     finally:
-        for (number, timer, _), handler in zip(timers, previous, strict=True):
+        for (number, timer), handler in zip(timers, previous, strict=True):
             signal.setitimer(timer, 0.0)
             signal.signal(number, handler)
 

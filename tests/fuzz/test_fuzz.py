@@ -3,6 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
+import subprocess
+import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -88,6 +93,15 @@ def test_the_guard_sees_every_fault(act, kind: str, tmp_path: Path, monkeypatch:
     assert outcome.kind == kind, outcome
     assert outcome.is_fault == (kind not in ("read", "refused"))
     assert not (tmp_path / "outside.txt").exists()
+
+
+def test_waiting_is_a_hang_but_a_process_that_was_stopped_did_not_wait(tmp_path: Path) -> None:
+    wakes = "import os, sys, time; time.sleep(2.5); os.kill(int(sys.argv[1]), 18)"
+    waker = subprocess.Popen([sys.executable, "-c", wakes, str(os.getpid())])
+    stopped = guarded(lambda _: os.kill(os.getpid(), signal.SIGSTOP), b"", tmp_path, limit=0.05)
+    assert waker.wait() == 0
+    assert stopped.kind == "read"
+    assert guarded(lambda _: time.sleep(10.0), b"", tmp_path, limit=0.05).kind == "hang"
 
 
 def test_the_guard_lets_go_afterwards(tmp_path: Path) -> None:

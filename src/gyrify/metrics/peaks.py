@@ -26,6 +26,8 @@ def prominent_maxima(profile: FloatArray, prominence: float) -> NDArray[np.int64
     (n_maxima,) int array
         Indices in increasing order; of a plateau, its middle.
     """
+    if np.ptp(profile) < prominence:  # mostly noise, with many maxima
+        return np.empty(0, dtype=np.int64)
     peaks = _maxima(profile)
     if peaks.size == 0:
         return peaks
