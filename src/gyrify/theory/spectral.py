@@ -29,7 +29,8 @@ def lobatto_points(degree: int) -> FloatArray:
         The ends and the roots of the derivative of the Legendre polynomial [-].
     """
     inner = legendre.legroots(legendre.legder([0.0] * degree + [1.0])) if degree > 1 else np.empty(0)
-    return np.concatenate([[-1.0], np.sort(inner), [1.0]])
+    # All roots are real; from NumPy 2.5 on they come as complex numbers all the same.
+    return np.concatenate([[-1.0], np.sort(inner.real), [1.0]])
 
 
 def lagrange(degree: int, x: ArrayLike) -> tuple[FloatArray, FloatArray]:
