@@ -166,7 +166,7 @@ def confined(*folders: Path) -> Iterator[None]:
 def time_limit(seconds: float) -> Iterator[None]:
     """Raise Hang in what takes more time of the processor, or waits twenty times as long.
 
-    The wait is counted by alarms, of which there is but one for all the time that the process itself was stopped.
+    The wait is counted by alarms: there is but one for all the time that the process itself was stopped.
     """
     alarms = 0
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from pathlib import Path
+from unittest import mock
 
 from target import Target
 
@@ -30,7 +32,6 @@ def _config(folder: Path) -> Callable[[bytes], object]:
 def _study(folder: Path) -> Callable[[bytes], object]:
     file = folder / "study.toml"
     (folder / "base.toml").write_text("seed = 1\n[growth]\nratio = 2.0\n", encoding="utf-8")
-    design.MAX_POINTS = _FEW_POINTS  # type: ignore[misc]
 
     def read(data: bytes) -> None:
         file.write_bytes(data)
@@ -41,6 +42,10 @@ def _study(folder: Path) -> Callable[[bytes], object]:
         assert keys == [point.key for point in study.points()]
 
     return read
+
+
+def _few_points() -> AbstractContextManager[None]:
+    return mock.patch.object(design, "MAX_POINTS", _FEW_POINTS)
 
 
 def _summary(folder: Path) -> Callable[[bytes], object]:
@@ -79,6 +84,7 @@ TARGETS = (
         "study",
         "study, TOML",
         _study,
+        _few_points,
         words=(b"[[design.parameter]]", b"[[design.point]]", b"[base]", b"[design]"),
     ),
     Target("summary", "`summary.json`, `metrics.csv`", _summary),
