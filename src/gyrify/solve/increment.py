@@ -9,8 +9,9 @@ from typing import Final
 import numpy as np
 
 from gyrify.energy.total import TotalEnergy
+from gyrify.solve.definite import DefiniteHessian
 from gyrify.solve.equilibrium import find_equilibrium
-from gyrify.solve.newton import Iterate, definite_factor, minimise
+from gyrify.solve.newton import Iterate, minimise
 from gyrify.solve.path import Path
 from gyrify.solve.problem import Problem, State, Stepping
 from gyrify.solve.quasi_newton import QuasiNewton
@@ -79,7 +80,7 @@ class Increments:
         total = self._energy(before, span)
         guess = self._predict(total, before, span)
         candidates, mass = self.problem.candidates, self.problem.shift_mass
-        self.model.renew(definite_factor(total, guess.u, self.system, candidates, mass))
+        self.model.renew(DefiniteHessian(total, self.system, candidates, mass).factor(guess.u))
         self.model.carry()
 
     def _energy(self, state: State, span: int) -> TotalEnergy:

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from gyrify.energy.term import Evaluation
 from gyrify.energy.total import TotalEnergy
 from gyrify.errors import SolveError
-from gyrify.solve.linear import Factor
+from gyrify.solve.definite import DefiniteHessian
 from gyrify.solve.quasi_newton import QuasiNewton
 from gyrify.solve.result import Result, Solution, Stats
-from gyrify.solve.shift import shifted_factor
 from gyrify.solve.system import System
 from gyrify.solve.types import FloatArray, IntArray
 
@@ -106,7 +104,7 @@ def minimise(
     """
     before = (system.factorizations, system.analyses)
     at = start if isinstance(start, Iterate) else Iterate.at(total, start, system)
-    model = model or QuasiNewton()
+    model, hessian = model or QuasiNewton(), DefiniteHessian(total, system, candidates, mass)
     # MAX_NEWTON is what it comes to unless something else happens first.
     result, iteration = Result.MAX_NEWTON if np.isfinite(at.value) else Result.INADMISSIBLE, 0
     while result is Result.MAX_NEWTON:
@@ -119,7 +117,7 @@ def minimise(
         is_old = model.serves(at.residual, criterion.force)
         try:
             if not is_old:
-                model.renew(definite_factor(total, at.u, system, candidates, mass))
+                model.renew(hessian.factor(at.u))
             at, result = _step(total, at, model, system)
         except SolveError:
             result = Result.SINGULAR
@@ -148,36 +146,6 @@ def largest_force(gradient: FloatArray, system: System) -> float:
     forces[system.free] = gradient
     by_point = forces.reshape(-1, system.n_dim)
     return float(np.sqrt(np.einsum("pi,pi->p", by_point, by_point).max()))
-
-
-def definite_factor(
-    total: TotalEnergy,
-    u: FloatArray,
-    system: System,
-    candidates: Callable[[FloatArray], IntArray],
-    mass: FloatArray | None,
-) -> Factor:
-    """Factor of the exact Hessian, or of the projected or shifted one where that is indefinite.
-
-    Barriers are projected first: often nothing else is needed, and their negative curvature, far larger than
-    that of the tissue, would take a shift that stops all motion.
-    """
-
-    def assembled(evaluations: Sequence[Evaluation]) -> FloatArray:
-        return system.assemble(evaluations, lambda: candidates(u))
-
-    exact = total.evaluate(u, project_psd=False)
-    data = assembled(exact)
-    factor = system.factorise_definite(data)
-    if factor is not None:
-        return factor
-    if mass is None:
-        return system.factorise_data(assembled(total.evaluate(u, project_psd=True)))
-    barriers_projected = total.project_barriers(u, exact)
-    if barriers_projected is not None:
-        data = assembled(barriers_projected)
-        factor = system.factorise_definite(data)
-    return factor or shifted_factor(system, data, mass, growth=4.0)
 
 
 def _line_search(

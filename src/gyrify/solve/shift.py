@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from gyrify.errors import SolveError
 from gyrify.solve.linear import Factor
 from gyrify.solve.system import System
@@ -12,9 +14,24 @@ _FIRST_SHIFT = 1e-5
 _RAISES = 60
 
 
+class Shifted(NamedTuple):
+    """A definite factor, and the shift that it took.
+
+    Attributes
+    ----------
+    factor : Factor
+        Of K + tau M.
+    tau : float
+        The shift [Pa/mm^2].
+    """
+
+    factor: Factor
+    tau: float
+
+
 def shifted_factor(
     system: System, data: FloatArray, mass: FloatArray, least: float = 0.0, growth: float = 2.0
-) -> Factor:
+) -> Shifted:
     """Factor of K + tau M with the first tau of a geometric sequence that leaves no negative pivot.
 
     Parameters
@@ -32,7 +49,7 @@ def shifted_factor(
 
     Returns
     -------
-    Factor
+    Shifted
 
     Raises
     ------
@@ -46,7 +63,7 @@ def shifted_factor(
         shifted[diagonal] += tau * mass
         factor = system.factorise_definite(shifted)
         if factor is not None:
-            return factor
+            return Shifted(factor, tau)
         tau *= growth
     raise SolveError(
         "No shift makes the stiffness positive definite.", "Check that all stiffnesses are finite."

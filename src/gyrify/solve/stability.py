@@ -156,7 +156,7 @@ class Tangent:
         if self._system.pattern is not self._pattern:
             raise RuntimeError("the pattern has grown since this tangent was assembled")
         if self.n_negative > 0:
-            return shifted_factor(self._system, self._data, self.mass, -1.2 * guess)
+            return shifted_factor(self._system, self._data, self.mass, -1.2 * guess).factor
         factor = self._system.factorise_definite(self._data)
         return self._system.factorise_data(self._data) if factor is None else factor
 
