@@ -39,6 +39,8 @@ COMPILED = (
     "energy/kernels.py",
     "energy/cell.py",
     "energy/lanes.py",
+    "energy/dashpot.py",
+    "energy/tangents.py",
     "energy/projection.py",
 )
 

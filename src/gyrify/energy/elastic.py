@@ -24,9 +24,12 @@ class CellPattern:
 
     def __init__(self, cells: IntArray, n_dim: int, extra: int | None = None) -> None:
         dofs = (cells[:, :, None] * n_dim + np.arange(n_dim)).reshape(cells.shape[0], -1)
-        if extra is not None:
-            dofs = np.concatenate([dofs, np.full((cells.shape[0], 1), extra)], axis=1)
         p, q = np.triu_indices(dofs.shape[1])
+        if extra is not None:
+            # its column comes last, so that the entries of the nodes have the same places with and without
+            last = dofs.shape[1]
+            dofs = np.concatenate([dofs, np.full((cells.shape[0], 1), extra)], axis=1)
+            p, q = np.append(p, np.arange(last + 1)), np.append(q, np.full(last + 1, last))
         self.pattern, position = Pattern.of(dofs[:, p], dofs[:, q])
         self.position = np.ascontiguousarray(position, dtype=np.int32)
 
@@ -63,22 +66,38 @@ class ElasticEnergy:
         self.pattern = pattern
         _, n_nodes, n_dim = kinematics.gradients.shape
         self._kernels: ElasticKernels = elastic_kernels(n_dim, n_nodes)
+        self._add_cells = self._kernels.accumulate
+        self._slope = np.empty(0)
 
     def evaluate(self, u: FloatArray, order: int, project_psd: bool = False) -> Evaluation:
         """Energy [Pa mm^2], gradient [Pa mm], Hessian [Pa]; see `EnergyTerm`."""
         return self._accumulate(u, order, project_psd, self.kappa, np.zeros_like(self.kappa))
 
     def _accumulate(
-        self, u: FloatArray, order: int, project_psd: bool, kappa: FloatArray, pressure: FloatArray
+        self,
+        u: FloatArray,
+        order: int,
+        project_psd: bool,
+        kappa: FloatArray,
+        pressure: FloatArray,
+        F33: float = 1.0,
     ) -> Evaluation:
-        """Sum over cells, with a pressure [Pa] added to dW/dJ of each."""
+        """Sum over cells, with a pressure [Pa] added to dW/dJ of each, and all stretched by F33 along z."""
         k = self.kinematics
         gradient = np.zeros_like(u) if order >= 1 else np.empty((0, u.shape[1]))
         values = np.zeros(self.pattern.pattern.rows.size if order >= 2 else 0)
-        cells = (k.cells, k.base, k.gradients, k.f33, self.mu, kappa, pressure, self.weight)
-        value = self._kernels.accumulate(
-            u, *cells, order, project_psd, self.pattern.position, gradient, values
+        cells = (
+            k.cells,
+            k.base,
+            k.gradients,
+            F33 * k.f33,
+            self._slope,
+            self.mu,
+            kappa,
+            pressure,
+            self.weight,
         )
+        value = self._add_cells(u, *cells, order, project_psd, self.pattern.position, gradient, values)
         if not np.isfinite(value):
             return Evaluation(np.inf)
         hessian = Hessian(self.pattern.pattern, values) if order >= 2 else None

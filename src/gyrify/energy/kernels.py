@@ -11,14 +11,23 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
-from gyrify.energy import cell, lanes, projection
+from gyrify.energy import cell, dashpot, lanes, projection, tangents
 from gyrify.energy.cell import deform, invert
+from gyrify.energy.dashpot import (
+    add_dashpot_forces,
+    add_dashpot_matrices,
+    project_stresses,
+    squares,
+    subtract_from_strain,
+    weigh,
+)
 from gyrify.energy.lanes import (
     LANES,
+    add_axial_force,
+    add_axial_matrices,
     add_forces,
     add_matrices,
     add_products,
-    add_projected,
     energy,
     gather,
     invariants,
@@ -29,6 +38,7 @@ from gyrify.energy.lanes import (
     weigh_moduli,
 )
 from gyrify.energy.lanes import invert as invert_all
+from gyrify.energy.tangents import add_projected
 from gyrify.physics import isotropic, neo_hookean
 
 # Closures may capture integers only: numba finds them again in its cache, but not captured functions. The
@@ -39,8 +49,11 @@ class ElasticKernels(NamedTuple):
     """Compiled functions of one kind of simplex."""
 
     accumulate: Callable[..., float]
+    accumulate_axial: Callable[..., float]
+    dissipate: Callable[..., float]
     largest_step: Callable[..., float]
     grow: Callable[..., None]
+    deform: Callable[..., None]
     volume_ratio: Callable[..., None]
 
 
@@ -49,20 +62,23 @@ def elastic_kernels(n_dim: int, n_nodes: int) -> ElasticKernels:
     """Kernels for cells of ``n_nodes`` nodes in ``n_dim`` dimensions, compiled at their first call."""
     digest = _sources_digest()
     return ElasticKernels(
-        _accumulate(n_dim, n_nodes, digest),
+        _accumulate(n_dim, n_nodes, 0, digest),
+        _accumulate(n_dim, n_nodes, 1, digest),
+        _dissipate(n_dim, n_nodes, digest),
         _largest_step(n_dim, n_nodes, digest),
         _grow(n_dim, n_nodes, digest),
+        _deform(n_dim, n_nodes, digest),
         _volume_ratio(n_dim, n_nodes, digest),
     )
 
 
 def _sources_digest() -> int:
     """Checksum, not negative, of the source of everything that is compiled into the kernels."""
-    modules = (cell, lanes, projection, isotropic, neo_hookean)
+    modules = (cell, dashpot, lanes, projection, tangents, isotropic, neo_hookean)
     return zlib.crc32("".join(map(inspect.getsource, modules)).encode())
 
 
-def _accumulate(n_dim: int, n_nodes: int, digest: int) -> Any:
+def _accumulate(n_dim: int, n_nodes: int, axial: int, digest: int) -> Any:
     @njit(cache=True, error_model="numpy")
     def accumulate(  # type: ignore[no-untyped-def]
         u,
@@ -70,6 +86,7 @@ def _accumulate(n_dim: int, n_nodes: int, digest: int) -> Any:
         base,
         gradients,
         f33,
+        slope,
         mu,
         kappa,
         pressure,
@@ -80,7 +97,10 @@ def _accumulate(n_dim: int, n_nodes: int, digest: int) -> Any:
         gradient,
         values,
     ):
-        """Add every point's energy, forces and matrix; infinite as soon as one is inverted."""
+        """Add every point's energy, forces and matrix; infinite as soon as one is inverted.
+
+        The slope dF33/dw [1/mm] of each point is read where a common F33 is unknown (axial is 1).
+        """
         x, g = np.empty((n_nodes, n_dim, LANES)), np.empty((n_nodes, n_dim, LANES))
         F, H = np.empty((n_dim, n_dim, LANES)), np.empty((n_dim + 0 * digest, n_dim, LANES))
         f, h = np.empty((n_nodes, n_dim, LANES)), np.empty((n_nodes, n_dim, LANES))
@@ -103,13 +123,56 @@ def _accumulate(n_dim: int, n_nodes: int, digest: int) -> Any:
             products(n_dim, n_nodes, n, F, g, f)
             products(n_dim, n_nodes, n, H, g, h)
             add_forces(n_dim, n_nodes, first, n, f, h, moduli, cells, gradient)
+            if axial:
+                add_axial_force(first, n, f33, slope, moduli, gradient)
             if order == 2 and project_psd:
-                add_projected(n_dim, n_nodes, first, n, F, H, g, moduli, position, values)
+                add_projected(n_dim, n_nodes, axial, first, n, F, H, g, f33, slope, moduli, position, values)
             elif order == 2:
                 add_matrices(n_dim, n_nodes, first, n, f, h, g, moduli, position, entries, values)
+                if axial:
+                    add_axial_matrices(
+                        n_dim, n_nodes, first, n, f33, slope, f, h, moduli, position, entries, values
+                    )
         return value
 
     return accumulate
+
+
+def _dissipate(n_dim: int, n_nodes: int, digest: int) -> Any:
+    @njit(cache=True)
+    def dissipate(  # type: ignore[no-untyped-def]
+        u, cells, base, gradients, previous, weight, order, project_psd, position, gradient, values
+    ):
+        """Add every point's Kelvin-Voigt energy, forces and matrix; ``previous`` is the strain before."""
+        x, g = np.empty((n_nodes, n_dim, LANES)), np.empty((n_nodes, n_dim, LANES))
+        F, B = np.empty((n_dim, n_dim, LANES)), np.empty((n_dim + 0 * digest, n_dim, LANES))
+        f, s = np.empty((n_nodes, n_dim, LANES)), np.empty((n_nodes, n_dim, LANES))
+        S, entries = np.empty((n_dim, n_dim, LANES)), np.empty(LANES)
+        value = 0.0
+        for first in range(0, cells.shape[0], LANES):
+            n = min(LANES, cells.shape[0] - first)
+            gather(n_dim, n_nodes, first, n, u, cells, x)
+            load(n_nodes, n_dim, first, n, gradients, g)
+            load(n_dim, n_dim, first, n, base, F)
+            add_products(n_dim, n_nodes, n, x, g, F)
+            load(n_dim, n_dim, first, n, previous, S)
+            subtract_from_strain(n_dim, n, F, S)
+            value += weigh(n_dim, first, n, weight, S, entries)
+            if order == 0:
+                continue
+            products(n_dim, n_nodes, n, S, g, s)
+            add_dashpot_forces(n_dim, n_nodes, first, n, F, s, cells, gradient)
+            if order == 1:
+                continue
+            if project_psd:
+                project_stresses(n_dim, n, S)
+                products(n_dim, n_nodes, n, S, g, s)
+            products(n_dim, n_nodes, n, F, g, f)
+            squares(n_dim, n, F, B)
+            add_dashpot_matrices(n_dim, n_nodes, first, n, B, f, g, s, weight, position, entries, values)
+        return value
+
+    return dissipate
 
 
 def _largest_step(n_dim: int, n_nodes: int, digest: int) -> Any:
@@ -164,6 +227,18 @@ def _grow(n_dim: int, n_nodes: int, digest: int) -> Any:
                         base[first + l, i, j] = H[j, i, l]
 
     return grow
+
+
+def _deform(n_dim: int, n_nodes: int, digest: int) -> Any:
+    @njit(cache=True)
+    def deform_all(u, cells, base, gradients, deformation):  # type: ignore[no-untyped-def]
+        """Write base + sum_a u_a (x) g_a."""
+        F = np.empty((n_dim, n_dim + 0 * digest))
+        for c in range(cells.shape[0]):
+            deform(n_dim, n_nodes, u, cells[c], base[c], gradients[c], F)
+            deformation[c] = F
+
+    return deform_all
 
 
 def _volume_ratio(n_dim: int, n_nodes: int, digest: int) -> Any:

@@ -146,4 +146,7 @@ class ElasticKinematics:
 
     def deformation(self, u: FloatArray) -> FloatArray:
         """(n_cells, n_dim, n_dim) elastic deformation gradients in the plane of a state u [mm]."""
-        return np.asarray(self.base + np.einsum("cai,caj->cij", u[self.cells], self.gradients))
+        _, n_nodes, n_dim = self.gradients.shape
+        F = np.empty_like(self.base)
+        elastic_kernels(n_dim, n_nodes).deform(u, self.cells, self.base, self.gradients, F)
+        return F

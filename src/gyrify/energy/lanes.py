@@ -3,8 +3,7 @@
 Inner loops run over the points of the batch, so that the compiler makes vector instructions of them. As in
 `gyrify.energy.cell` dimension and number of nodes are arguments for which the callers pass constants. The
 cell matrix needs no tangent tensor: with h_a = H g_a and f_a = F g_a of the shape-function gradients g_a,
-every term of `gyrify.physics.isotropic` becomes a product of nodal vectors. Only where a projection is asked
-for is the tangent formed as a matrix.
+every term of `gyrify.physics.isotropic` becomes a product of nodal vectors.
 """
 
 from __future__ import annotations
@@ -12,7 +11,6 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from gyrify.energy.projection import project_to_psd
 from gyrify.physics.isotropic import coefficients
 from gyrify.physics.neo_hookean import density
 
@@ -205,37 +203,37 @@ def add_matrices(n_dim, n_nodes, first, n, f, h, g, moduli, position, entries, v
                     entry += 1
 
 
-@njit(cache=True)
-def add_projected(n_dim, n_nodes, first, n, F, H, g, moduli, position, values):
-    """Add the cell matrices of the tangents without their negative eigenvalues."""
-    C = np.empty((n_dim * n_dim, n_dim * n_dim))
+@njit(cache=True, inline="always", error_model="numpy")
+def add_axial_force(first, n, f33, slope, moduli, gradient):
+    """Add w P33 dF33/dw to the force on the axial unknown w, the first entry of the last row."""
+    total = 0.0
     for l in range(n):
-        tangent(n_dim, l, F, H, moduli, C)
-        project_to_psd(C)
-        entry = 0
-        for a in range(n_nodes):
-            for i in range(n_dim):
-                for b in range(a, n_nodes):
-                    for k in range(i if b == a else 0, n_dim):
-                        total = 0.0
-                        for j in range(n_dim):
-                            for m in range(n_dim):
-                                total += g[a, j, l] * C[i * n_dim + j, k * n_dim + m] * g[b, m, l]
-                        values[position[first + l, entry]] += total
-                        entry += 1
+        z = f33[first + l]
+        total += slope[first + l] * (moduli[0, l] * z + moduli[1, l] / z)
+    gradient[-1, 0] += total
 
 
-@njit(cache=True)
-def tangent(n_dim, l, F, H, moduli, C):
-    """Weighed tangent of one point as a matrix over (i, j), (k, m)."""
-    for i in range(n_dim):
-        for j in range(n_dim):
-            for k in range(n_dim):
-                for m in range(n_dim):
-                    C[i * n_dim + j, k * n_dim + m] = (
-                        moduli[2, l] * H[i, j, l] * H[k, m, l]
-                        - moduli[1, l] * H[i, m, l] * H[k, j, l]
-                        + moduli[3, l] * F[i, j, l] * F[k, m, l]
-                        + moduli[4, l] * (F[i, j, l] * H[k, m, l] + H[i, j, l] * F[k, m, l])
-                    )
-            C[i * n_dim + j, i * n_dim + j] += moduli[0, l]
+@njit(cache=True, inline="always", error_model="numpy")
+def add_axial_matrices(n_dim, n_nodes, first, n, f33, slope, f, h, moduli, position, entries, values):
+    """Add the exact column of the axial unknown, whose entries come after the triangle of the nodes."""
+    size = n_dim * n_nodes
+    column = size * (size + 1) // 2
+    for a in range(n_nodes):
+        for i in range(n_dim):
+            for l in range(n):
+                z = f33[first + l]
+                along_h = moduli[2, l] / z + moduli[4, l] * z
+                along_f = moduli[3, l] * z + moduli[4, l] / z
+                entries[l] = slope[first + l] * (along_h * h[a, i, l] + along_f * f[a, i, l])
+            for l in range(n):
+                values[position[first + l, column + a * n_dim + i]] += entries[l]
+    total = 0.0
+    for l in range(n):
+        total += slope[first + l] * slope[first + l] * axial_modulus(l, f33[first + l], moduli)
+    values[position[first, column + size]] += total
+
+
+@njit(cache=True, inline="always", error_model="numpy")
+def axial_modulus(l, z, moduli):
+    """dP33/dF33 of one point, weighed, at F33 = z."""
+    return moduli[0, l] + (moduli[2, l] - moduli[1, l]) / (z * z) + moduli[3, l] * z * z + 2.0 * moduli[4, l]

@@ -6,7 +6,9 @@ from functools import lru_cache
 
 import numpy as np
 
+from gyrify.energy.dashpot import strains
 from gyrify.energy.elastic import CellPattern
+from gyrify.energy.kernels import elastic_kernels
 from gyrify.energy.kinematics import ElasticKinematics
 from gyrify.energy.term import Evaluation, FloatArray, Hessian, Pattern
 
@@ -87,46 +89,30 @@ class KelvinVoigtEnergy:
         self.weight = coefficient * weight
         self.previous_strain = previous_strain
         self.pattern = pattern
+        _, n_nodes, n_dim = kinematics.gradients.shape
+        self._add_cells = elastic_kernels(n_dim, n_nodes).dissipate
 
     def evaluate(self, u: FloatArray, order: int, project_psd: bool = False) -> Evaluation:
-        """Energy [Pa mm^2], gradient [Pa mm], Hessian [Pa]; see `EnergyTerm`."""
+        """Energy [Pa mm^2], gradient [Pa mm], Hessian [Pa]; see `EnergyTerm`.
+
+        Projected is the Hessian without the negative part of the stress stiffening: semi-definite, and
+        more than the exact one.
+        """
         k = self.kinematics
-        F = k.deformation(u)
-        rate = green_lagrange(F) - self.previous_strain
-        value = 0.5 * float(np.sum(self.weight * np.einsum("cij,cij->c", rate, rate)))
-        if order == 0:
-            return Evaluation(value)
-        weighted = self.weight[:, None, None] * rate
-        gradient = np.zeros_like(u)
-        np.add.at(gradient, k.cells, np.einsum("cij,cjk,cak->cai", F, weighted, k.gradients))
-        return Evaluation(value, gradient, self._hessian(F, weighted, project_psd) if order >= 2 else None)
+        gradient = np.zeros_like(u) if order >= 1 else np.empty((0, u.shape[1]))
+        values = np.zeros(self.pattern.pattern.rows.size if order >= 2 else 0)
+        cells = (k.cells, k.base, k.gradients, self.previous_strain, self.weight)
+        value = self._add_cells(u, *cells, order, project_psd, self.pattern.position, gradient, values)
+        hessian = Hessian(self.pattern.pattern, values) if order >= 2 else None
+        return Evaluation(value, gradient if order >= 1 else None, hessian)
 
     def max_step(self, u: FloatArray, du: FloatArray) -> float:  # noqa: ARG002
         """No limit."""
         return 1.0
 
-    def _hessian(self, F: FloatArray, weighted: FloatArray, project_psd: bool) -> Hessian:
-        """Exact, or without the negative part of the stress stiffening (a positive semi-definite bound)."""
-        k = self.kinematics
-        g, n_dim = k.gradients, F.shape[1]
-        stretched = np.einsum("cij,caj->cai", F, g)
-        products = np.einsum("cai,cbi->cab", g, g)
-        rotated = np.einsum("cij,ckj->cik", F, F)
-        matrix = 0.5 * np.einsum("c,cak,cbi->caibk", self.weight, stretched, stretched)
-        matrix += 0.5 * np.einsum("c,cab,cik->caibk", self.weight, products, rotated)
-        if project_psd:
-            eigenvalues, vectors = np.linalg.eigh(weighted)
-            weighted = np.einsum("cij,cj,ckj->cik", vectors, np.maximum(eigenvalues, 0.0), vectors)
-        stiffening = np.einsum("cai,cij,cbj->cab", g, weighted, g)
-        matrix += np.einsum("cab,ik->caibk", stiffening, np.eye(n_dim))
-        size = k.cells.shape[1] * n_dim
-        rows, cols = np.triu_indices(size)
-        entries = matrix.reshape(-1, size, size)[:, rows, cols]
-        values = np.zeros(self.pattern.pattern.rows.size)
-        np.add.at(values, self.pattern.position, entries)
-        return Hessian(self.pattern.pattern, values)
-
 
 def green_lagrange(F: FloatArray) -> FloatArray:
     """(n_cells, n_dim, n_dim) strain E = (F^T F - I) / 2."""
-    return np.asarray(0.5 * (np.einsum("cki,ckj->cij", F, F) - np.eye(F.shape[1])))
+    E = np.empty_like(F)
+    strains(F, E)
+    return E
