@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import bodies
 import numpy as np
 import pytest
 from bodies import KAPPA, MU
@@ -16,6 +17,7 @@ from gyrify.energy.mean_dilatation import MeanDilatationEnergy, PatchPattern
 from gyrify.mesh import Mesh
 from gyrify.mesh.ring import elliptic_ring
 from gyrify.mesh.sheet import Layers
+from gyrify.physics.isotropic import energy_density, first_piola
 
 STEPS = 10.0 ** -np.arange(1.0, 9.5, 0.5)
 
@@ -56,6 +58,36 @@ def test_error_of_differences_is_a_v_with_a_common_axial_stretch(
     u, du = 0.003 * rng.standard_normal((2, mesh.n_points + 1, 2))
     u[-1], du[-1] = (0.4, 0.0), (0.02, 0.0)
     assert_derivatives(term_of(mesh, element, axial=True), u, du, STEPS)
+
+
+@pytest.mark.parametrize("element", ["linear", "quadratic"])
+def test_axial_force_is_the_net_stress_along_z(rng: np.random.Generator, element: str) -> None:
+    """Energy and force on w = (F33 - 1) L, L = 3, from density and stress of every point."""
+    mesh = small_ring(element)
+    term, u = term_of(mesh, element, axial=True), np.zeros((mesh.n_points + 1, 2))
+    u[:-1], u[-1, 0] = 0.003 * rng.standard_normal(mesh.points.shape), 0.4
+    k = term.kinematics
+    f33 = (1.0 + 0.4 / 3.0) * k.f33
+    material = (k.deformation(u), f33, term.mu, term.kappa)
+    found = term.evaluate(u, 1)
+    assert found.value == pytest.approx(np.sum(term.weight * energy_density(*material)), rel=1e-13)
+    net = np.sum(term.weight * first_piola(*material)[1] * k.f33) / 3.0
+    assert found.gradient[-1, 0] == pytest.approx(net, rel=1e-12)
+    assert found.gradient[-1, 1] == 0.0
+    u[-1, 0] = -3.0
+    assert term.evaluate(u, 2).value == np.inf
+
+
+def test_projected_axial_stiffness_is_exact_in_tension(rng: np.random.Generator) -> None:
+    """Stretched by 3 % on all sides every tangent is definite, so that nothing is cut off."""
+    points, cells, _ = bodies.distorted_square(rng, 9)
+    k, n = bodies.kinematics(points, cells), len(cells)
+    pattern = axial_pattern(cells, len(points))
+    term = AxialElasticEnergy(k, np.full(n, MU), np.full(n, KAPPA), k.volumes, pattern, 3.0)
+    u = np.concatenate([0.03 * points + 1e-4 * rng.standard_normal(points.shape), [[0.09, 0.0]]])
+    exact, projected = (dense_hessian(term.evaluate(u, 2, p).hessian, u.size) for p in (False, True))
+    assert abs(projected - exact).max() < 1e-12 * abs(exact).max()
+    assert abs(exact[-2]).max() > 0.1
 
 
 @pytest.mark.parametrize("kind", ["quadratic", "mean_dilatation", "axial"])

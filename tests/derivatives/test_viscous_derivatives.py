@@ -8,7 +8,11 @@ import pytest
 from differences import assert_derivatives, dense_hessian
 from oracle import area, complex_step, deformation
 
-from gyrify.energy.viscous import DragEnergy
+from gyrify.energy.elastic import CellPattern
+from gyrify.energy.kinematics import ElasticKinematics, Simplices
+from gyrify.energy.viscous import DragEnergy, KelvinVoigtEnergy
+from gyrify.mesh.ring import elliptic_ring
+from gyrify.mesh.sheet import Layers
 
 STEPS = 10.0 ** -np.arange(1.0, 9.5, 0.5)
 
@@ -51,6 +55,28 @@ def test_error_of_kelvin_voigt_differences_is_a_v(rng: np.random.Generator, grow
     growth = bodies.random_growth(rng, len(cells)) if grown else (None, None)
     before = 0.1 * rng.standard_normal((len(cells), 2, 2))
     term = bodies.kelvin_voigt(points, cells, before + np.swapaxes(before, 1, 2), *growth)
+    u, du = 0.02 * rng.standard_normal((2, *points.shape))
+    assert_derivatives(term, u, du, STEPS)
+
+
+@pytest.mark.parametrize("kind", ["quadratic", "space"])
+def test_error_of_kelvin_voigt_differences_is_a_v_in_other_cells(rng: np.random.Generator, kind: str) -> None:
+    """Quadratic triangles, and tetrahedra: more than one batch of points each."""
+    if kind == "quadratic":
+        mesh = elliptic_ring((4.0, 3.0), 0.5, 0.5, Layers(12, 4, 2, element="quadratic"))
+        points, cells = mesh.points, mesh.cells
+        simplices = Simplices.of(mesh.cell_points, cells, mesh.n_points)
+    else:
+        corners = np.concatenate([np.zeros((1, 3)), np.eye(3)])
+        points = (corners + rng.uniform(-0.1, 0.1, (70, 4, 3))).reshape(-1, 3)
+        cells = np.arange(280).reshape(70, 4)
+        simplices = Simplices.of(points[cells], cells, 280)
+    n, d = simplices.gradients.shape[0], points.shape[1]
+    stretch = rng.uniform(1.0, 1.5, n)
+    k = ElasticKinematics.of(simplices, stretch[:, None, None] * np.eye(d), np.ones(n))
+    before = 0.1 * rng.standard_normal((n, d, d))
+    before += np.swapaxes(before, 1, 2)
+    term = KelvinVoigtEnergy(k, 5.0, k.volumes * k.J_g, before, CellPattern(simplices.cells, d))
     u, du = 0.02 * rng.standard_normal((2, *points.shape))
     assert_derivatives(term, u, du, STEPS)
 
