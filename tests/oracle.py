@@ -116,7 +116,8 @@ class SliceOracle:
         x_before = rest + before[self.mesh.contour]
         shortest = np.linalg.norm(np.roll(x_before, -1, axis=0) - x_before, axis=1).min()
         T = self.config.geometry.cortical_thickness
-        d_hat = min(self.config.contact.activation_fraction * T, shortest / 2)
+        undeformed = np.linalg.norm(np.roll(rest, -1, axis=0) - rest, axis=1).min()
+        d_hat = min(self.config.contact.activation_fraction * T, max(shortest, undeformed / 10) / 2)
         gradient = np.zeros_like(u)
         k_b = self.config.material.young_modulus / 10
         gradient[self.mesh.contour] = barrier(rest, rest + u[self.mesh.contour], d_hat, k_b)[1]

@@ -28,6 +28,10 @@ AUTO_BARRIER = 0.1
 # Distance over the shortest edge within which points enter the sparsity pattern together: far enough that few
 # new symbolic analyses are needed, near enough that the factor stays sparse.
 REACH = 3.0
+# Edge of the contour over the shortest undeformed one below which it has collapsed; regular folds stay above.
+# Between the integration points of a quadratic cell no elastic energy resists that, so that contact has to:
+# were its distance to follow the edge further, both would halve until no increment is left.
+COLLAPSED = 0.1
 
 
 class Slice(Tissue):
@@ -128,9 +132,9 @@ class Slice(Tissue):
     def contact_energy(self, u: FloatArray) -> ContactEnergy:
         """Contact barrier for an increment that starts at a state u."""
         contact, T = self.config.contact, self.config.geometry.cortical_thickness
-        shortest = self.surface.shortest_edge(u)
-        d_hat = min(contact.activation_fraction * T, 0.5 * shortest)
-        return ContactEnergy(self.surface, d_hat, self.barrier_stiffness, 0.25 * shortest)
+        spacing = self._spacing(u)
+        d_hat = min(contact.activation_fraction * T, 0.5 * spacing)
+        return ContactEnergy(self.surface, d_hat, self.barrier_stiffness, 0.25 * spacing)
 
     def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:
         """See `gyrify.solve.problem.Problem`."""
@@ -150,7 +154,11 @@ class Slice(Tissue):
 
     def candidates(self, u: FloatArray) -> IntArray:
         """Point pairs of the contour that contact may couple before long."""
-        return self.surface.couplings(u, REACH * self.surface.shortest_edge(u))
+        return self.surface.couplings(u, REACH * self._spacing(u))
+
+    def _spacing(self, u: FloatArray) -> float:
+        """Length of the shortest edge of the contour, or that at which it has collapsed [mm]."""
+        return max(self.surface.shortest_edge(u), COLLAPSED * self.surface.shortest_edge(np.zeros_like(u)))
 
     def is_path_admissible(self, u: FloatArray, u_end: FloatArray) -> bool:
         """See `gyrify.solve.problem.Problem`."""

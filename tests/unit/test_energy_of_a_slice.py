@@ -122,6 +122,21 @@ def test_contact_has_its_distance_and_stiffness(tiny: Config) -> None:
     assert problem(tiny, contact__barrier_stiffness=5.0).barrier_stiffness == 5.0
 
 
+def test_contact_distance_follows_no_collapsing_edge(tiny: Config) -> None:
+    """An edge shrunk to 1/50 of the shortest one counts as 1/10 of it: d_hat is 1/20 and acts."""
+    slice_ = problem(tiny, contact__activation_fraction=0.5)
+    points, contour = slice_.mesh.points, slice_.mesh.contour
+    shortest = slice_.surface.shortest_edge(np.zeros_like(points))
+    first, second = points[contour[0]], points[contour[1]]
+    u = np.zeros_like(points)
+    u[contour[1]] = (first - second) * (1.0 - 0.02 * shortest / np.linalg.norm(first - second))
+    assert slice_.surface.shortest_edge(u) == pytest.approx(0.02 * shortest)
+    energy = slice_.contact_energy(u)
+    assert energy.d_hat == pytest.approx(0.05 * shortest)
+    force = energy.evaluate(u, order=1).gradient[contour[1]]
+    assert np.dot(force, second - first) < 0.0  # the energy falls as the edge grows again
+
+
 def test_contact_off_is_off(tiny: Config) -> None:
     slice_ = problem(tiny, contact__enabled=False)
     assert not any(hasattr(term, "d_hat") for term in slice_.energy(0.5, _at_rest(slice_), 0.4).terms)

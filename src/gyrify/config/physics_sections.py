@@ -208,7 +208,8 @@ class Contact(Section):
     enabled: bool = setting(True, "Whether the contour may not cross itself; off only for comparison.")
     activation_fraction: float = setting(
         0.0667,
-        "Gap at which contact sets in, over T; capped at half the shortest deformed contour edge.",
+        "Gap at which contact sets in, over T; capped at half the shortest deformed contour edge "
+        "(at no less than a twentieth of the shortest undeformed one).",
         gt=0,
         le=1,
     )
