@@ -138,7 +138,10 @@ def _reason(parameter: str, scanned: Sequence[Scanned], level: float, visible: b
     """Why nothing is critical."""
     scanned = [point for point in scanned if _is_known(point)]
     if len(scanned) < 2:
-        return f"Nothing is known: no two points of {parameter} could be computed."
+        return (
+            f"Nothing is known: no two points of {parameter} could be computed. "
+            "Scan another range, or raise mesh.n_around."
+        )
     unit = PARAMETERS[parameter].unit
     low, high = scanned[0].value, scanned[-1].value
     where = f"at all {len(scanned)} values of {parameter} from {low:.6g} to {high:.6g} {unit}".rstrip()

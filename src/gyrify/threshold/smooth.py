@@ -109,10 +109,15 @@ class SmoothBranch:
         Raises
         ------
         SolveError
-            If it is not found, however small the steps towards it.
+            If it is not found, however small the steps towards it, or no state is left to start from.
         """
         if value in self.known:
             return self.known[value]
+        if not self.known:
+            raise SolveError(
+                f"No smooth state is known to reach {value:.6g} from: every one that was found has gyri.",
+                "Raise mesh.n_around: the pattern of a coarse mesh may count as gyri.",
+            )
         near = min(self.known.values(), key=lambda state: abs(state.value - value))
         state = self._try(value, near)
         if state is None:

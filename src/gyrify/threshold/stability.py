@@ -69,7 +69,8 @@ class StabilityScan:
         if missing:
             shown = ", ".join(f"{value:.5g}" for value in missing[:5]) + (" …" if len(missing) > 5 else "")
             self.notes.append(
-                f"No smooth state is found at {shown}: it ends, or folds without a bifurcation."
+                f"No smooth state is found at {shown}: it ends, folds without a bifurcation, or the mesh "
+                "is too coarse to tell."
             )
         return scanned
 
