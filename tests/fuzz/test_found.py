@@ -74,6 +74,14 @@ def test_a_forged_row_is_refused(run: Path, statement: str, told: str) -> None:
         History.load(run)
 
 
+def test_what_sqlite_says_of_a_damaged_schema_is_fit_for_a_terminal(run: Path) -> None:
+    schema = "UPDATE sqlite_master SET sql = 'CREATE TABLE meta(' || char(1, 27) || ')' WHERE name = 'meta'"
+    forge(run, "PRAGMA writable_schema = ON", schema)
+    with pytest.raises(HistoryError, match="malformed") as raised:
+        History.load(run)
+    assert is_clear(str(raised.value))
+
+
 def test_states_of_another_mesh_are_refused(run: Path) -> None:
     forge(run, "UPDATE increments SET displacement = zeroblob(1600)")
     with pytest.raises(HistoryError, match="none of the mesh"):

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
+from gyrify.config.words import shorten
 from gyrify.errors import HistoryError
 
 RERUN: Final = "Restore the file from a copy, or run again with --overwrite."
@@ -49,7 +50,7 @@ def translated(name: str) -> Iterator[None]:
     try:
         yield
     except (sqlite3.Error, sqlite3.Warning, UnicodeDecodeError) as error:
-        text = str(error)
+        text = shorten(" ".join(str(error).split()), 200)
         what = f"The journal {name} could not be used: {text}."
         if "full" in text:
             advice = "Free space on the disk, then continue with `gyrify resume`."
