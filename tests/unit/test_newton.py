@@ -200,7 +200,8 @@ def test_every_result_says_what_happened_and_what_to_try() -> None:
 class Pull:
     """A problem whose solution is x = 10 x growth; paths longer than ``longest`` count as crossing.
 
-    At the k-th of twelve increments the solution is off by ``wobble`` sin k.
+    At the k-th of twelve increments the solution is off by ``wobble`` sin k. The spring ``stiffens`` with its
+    length.
     """
 
     longest: float = np.inf
@@ -210,17 +211,21 @@ class Pull:
     is_path_kept: bool = False
     may_jump: bool = False
     wobble: float = 0.0
+    stiffens: float = 0.0
 
     def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:  # noqa: ARG002
         goal = 10.0 * fraction + self.wobble * np.sin(12.0 * fraction)
-        dead = fraction > self.refuses_after
+        dead, k = fraction > self.refuses_after, self.stiffens
 
         class Spring(Well):
             def evaluate(self, u, order, project_psd=False):  # noqa: ARG002
                 if dead:
                     return Evaluation(np.inf)
                 arm = u - [goal, 0.0]
-                return Evaluation(0.5 * float(np.sum(arm**2)), arm, Hessian(DIAGONAL, np.ones(2)))
+                square = float(np.sum(arm**2))
+                force = (1.0 + k * square) * arm
+                stiffness = 1.0 + k * square * np.array([3.0, 1.0])
+                return Evaluation(0.5 * square + 0.25 * k * square**2, force, Hessian(DIAGONAL, stiffness))
 
         return TotalEnergy([Spring(0.0)])
 
