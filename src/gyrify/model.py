@@ -105,11 +105,11 @@ class Slice(Tissue):
 
     def compile(self) -> None:
         """Compile the kernels, or load them from their cache, so that no increment has to wait for it."""
-        u = np.zeros(self.state_shape)
-        energy = self.elastic_energy(self.kinematics(0.0))
-        energy.evaluate(u, order=2, project_psd=True)
-        energy.max_step(u, u)
-        self.simplices.volume_ratio(u)
+        start = State.reference(*self.state_shape)
+        total = self.energy(1.0, start, 0.0)
+        total.evaluate(start.u, project_psd=True)
+        total.max_step(start.u, start.u)
+        self.simplices.volume_ratio(start.u)
 
     def tissue_energy(self, fraction: float, start_u: FloatArray) -> TotalEnergy:
         """Energy of elasticity and contact alone, for an increment that starts at a displacement."""
