@@ -15,7 +15,9 @@ from gyrify import Config, History, Study, detection, run_study
 from gyrify.cli import main
 from gyrify.outputs import folded_picture
 from gyrify.report.figures import save_figure
-from gyrify.solve import branch, quasistatic
+from gyrify.solve import branch
+from gyrify.solve.increment import Increments
+from gyrify.solve.problem import State
 from gyrify.solve.result import Result, Solution, Stats
 
 Capture = pytest.CaptureFixture[str]
@@ -30,14 +32,14 @@ def ends_with(result: Result) -> Callable[[Patch], None]:
     """Every attempt at an increment ends with a named result from the third on."""
 
     def prepare(patch: Patch) -> None:
-        attempt = quasistatic._attempt
+        attempt = Increments.attempt
 
-        def fail(problem: Any, stepping: Any, state: Any, *rest: Any) -> Solution:
+        def fail(increments: Increments, state: State, span: int) -> Solution:
             if state.index >= FROM - 1:
                 return Solution(state.u, result, 1.0, Stats())
-            return attempt(problem, stepping, state, *rest)
+            return attempt(increments, state, span)
 
-        patch.setattr(quasistatic, "_attempt", fail)
+        patch.setattr(Increments, "attempt", fail)
 
     return prepare
 
@@ -46,14 +48,14 @@ def raises(error: BaseException) -> Callable[[Patch], None]:
     """The third increment raises."""
 
     def prepare(patch: Patch) -> None:
-        attempt = quasistatic._attempt
+        attempt = Increments.attempt
 
-        def fail(problem: Any, stepping: Any, state: Any, *rest: Any) -> Solution:
+        def fail(increments: Increments, state: State, span: int) -> Solution:
             if state.index >= FROM - 1:
                 raise error
-            return attempt(problem, stepping, state, *rest)
+            return attempt(increments, state, span)
 
-        patch.setattr(quasistatic, "_attempt", fail)
+        patch.setattr(Increments, "attempt", fail)
 
     return prepare
 

@@ -11,8 +11,9 @@ import pytest
 from gyrify import Config, simulate
 from gyrify.errors import SolveError
 from gyrify.reevaluation import Increment
-from gyrify.solve import quasistatic
-from gyrify.solve.result import Result
+from gyrify.solve.increment import Increments
+from gyrify.solve.problem import State
+from gyrify.solve.result import Result, Solution
 from gyrify.verify import _check_contact, verify
 
 FINE = Increment(0.0, 0.0, 0.0, 1.0, 1.0, True, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -40,16 +41,16 @@ def test_only_the_straight_path_of_a_jump_may_cross() -> None:
 @pytest.fixture
 def crossing_from_three(monkeypatch: pytest.MonkeyPatch) -> None:
     """From the third state on, however small the increment, its straight path crosses; once."""
-    attempt, crossed = quasistatic._attempt, []
+    attempt, crossed = Increments.attempt, []
 
-    def cross(problem: Any, stepping: Any, state: Any, span: int, *rest: Any) -> Any:
-        solution = attempt(problem, stepping, state, span, *rest)
+    def cross(increments: Increments, state: State, span: int) -> Solution:
+        solution = attempt(increments, state, span)
         if state.index == 3 and solution.result is Result.CONVERGED:
             crossed.append(span)
             return replace(solution, result=Result.CROSSING_PATH)
         return solution
 
-    monkeypatch.setattr(quasistatic, "_attempt", cross)
+    monkeypatch.setattr(Increments, "attempt", cross)
 
 
 @pytest.mark.usefixtures("crossing_from_three")
