@@ -22,12 +22,19 @@ def test_the_grid_has_every_combination_once() -> None:
     assert {one.element for one in grid("quadratic")} == {"quadratic"}
 
 
-def test_variants_change_the_element_or_the_number_and_nothing_else() -> None:
-    found = variants(Mechanics(number=0.13))
-    assert {one.element for one in found if one.number == 0.13} == {"quadratic", "mean_dilatation"}
-    assert {one.number for one in found if one.element == "linear"} == {0.013, 0.4, 2.6}
-    assert not set(found) & set(grid())
-    assert {replace(one, element="linear", number=0.13) for one in found} == {Mechanics(number=0.13)}
+def test_variants_change_the_element_the_number_or_the_imperfection_and_only_one() -> None:
+    this = Mechanics(number=0.13)
+    found = variants(this)
+    assert len(found) == len(set(found))
+    assert {one.element for one in found} == {"linear", "quadratic", "mean_dilatation"}
+    assert {one.number for one in found} == {0.013, 0.13, 0.4, 1.3, 2.6, 5.0}
+    assert {one.imperfection for one in found} == {1e-3, 1e-2, 3e-2, 1e-1}
+    for one in found:
+        restored = (
+            replace(one, **{key: getattr(this, key)}) for key in ("element", "number", "imperfection")
+        )
+        assert one != this
+        assert this in restored
 
 
 def test_a_mechanics_is_read_from_a_configuration_and_written_back() -> None:

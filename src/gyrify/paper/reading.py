@@ -19,6 +19,8 @@ ELEMENTS: Final = ("linear", "quadratic", "mean_dilatation")
 DISSIPATION: Final = (("drag", 0.13), ("drag", 1.3), ("drag", 5.0), ("kelvin_voigt", 0.1), ("none", 0.0))
 # Numbers between and beside those, for the readings that are best with them.
 FINER: Final = {"drag": (0.013, 0.4, 2.6), "kelvin_voigt": (0.01, 1.0), "none": ()}
+# Node jitter, as a fraction of the local layer: every free mesh is imperfect, and no paper says by how much.
+IMPERFECTIONS: Final = (1e-3, 1e-2, 3e-2, 1e-1)
 # Stability is located by a threshold of its own, and costs a quarter of a run.
 _PLAIN: Final = {"stability.detect": False, "stability.follow_branch": False}
 
@@ -37,6 +39,8 @@ class Mechanics:
         Dissipation number [-]; 0 where there is none.
     element : str
         Finite element.
+    imperfection : float
+        Node jitter, as a fraction of the local layer [-].
     """
 
     out_of_plane: str = "blocked"
@@ -45,6 +49,7 @@ class Mechanics:
     dissipation: str = "drag"
     number: float = 1.3
     element: str = "linear"
+    imperfection: float = 1e-3
 
     @classmethod
     def of(cls, config: Config) -> Mechanics:
@@ -58,6 +63,7 @@ class Mechanics:
             dissipation.kind,
             number,
             config.mesh.element,
+            config.mesh.node_jitter,
         )
 
     @property
@@ -70,11 +76,13 @@ class Mechanics:
             "dissipation.kind": self.dissipation,
             "dissipation.number": self.number,
             "mesh.element": self.element,
+            "mesh.node_jitter": self.imperfection,
         }
 
     def __str__(self) -> str:
         drag = "no dissipation" if self.dissipation == "none" else f"{self.dissipation} {self.number:g}"
-        words = (self.out_of_plane, self.stretch, self.energy_per, drag, f"{self.element} triangles")
+        jitter = f"imperfection {self.imperfection:g}"
+        words = (self.out_of_plane, self.stretch, self.energy_per, drag, f"{self.element} triangles", jitter)
         return ", ".join(words).replace("_", " ").replace("kelvin voigt", "Kelvin-Voigt")
 
 
@@ -149,11 +157,17 @@ def grid(element: str = "linear") -> list[Mechanics]:
 
 
 def variants(mechanics: Mechanics) -> list[Mechanics]:
-    """The same with the other elements, and with other numbers of its dissipation."""
+    """The same with one thing changed: the element, the number of its dissipation, or the imperfection."""
     return [
         *(replace(mechanics, element=element) for element in ELEMENTS if element != mechanics.element),
-        *(replace(mechanics, number=number) for number in FINER[mechanics.dissipation]),
+        *(replace(mechanics, number=c) for c in _numbers(mechanics.dissipation) if c != mechanics.number),
+        *(replace(mechanics, imperfection=a) for a in IMPERFECTIONS if a != mechanics.imperfection),
     ]
+
+
+def _numbers(dissipation: str) -> list[float]:
+    """All numbers that are tried with a kind of dissipation."""
+    return sorted([*FINER[dissipation], *(c for kind, c in DISSIPATION if kind == dissipation)])
 
 
 def require_gi(word: str) -> GiDefinition:

@@ -20,8 +20,8 @@ from gyrify.paper.reading import grid, variants
 from gyrify.study import Point
 
 BEST: Final = 3
-# Mechanics that are tried with the other elements and finer steps of dissipation too.
-_REFINED: Final = 4
+# Mechanics about which others are tried.
+_REFINED: Final = 3
 # Runs per batch and worker: enough to keep all at work, few enough to learn from.
 _BATCH: Final = 8
 
@@ -79,8 +79,8 @@ def screen(
 ) -> Screening:
     """Rank readings by the number of observations that hold at once.
 
-    All mechanics are screened with linear triangles, the paper's, and coarse steps of dissipation; the best
-    with the other elements and with the steps between.
+    All mechanics are screened with linear triangles, the paper's, a small imperfection, and coarse steps of
+    dissipation; then what differs from the best in one thing, until nothing that does is left untried.
 
     Parameters
     ----------
@@ -104,10 +104,13 @@ def screen(
     given = candidates is not None
     pool = list(candidates or (Candidate(base, mechanics, seed) for mechanics in grid()))
     live = _search(bench, pool, until, tell)
-    if not live and not given:
-        best = ranked(pool)[:_REFINED]
-        others = dict.fromkeys(other for c in best for other in variants(c.mechanics))
-        pool += [Candidate(base, mechanics, seed) for mechanics in others]
+    while not live and not given:
+        tried = {c.mechanics for c in pool}
+        near = dict.fromkeys(other for c in ranked(pool)[:_REFINED] for other in variants(c.mechanics))
+        new = [Candidate(base, mechanics, seed) for mechanics in near if mechanics not in tried]
+        if not new:
+            break
+        pool += new
         live = _search(bench, pool, until, tell)
     return Screening(tuple(ranked(pool)), not live, len(live))
 
