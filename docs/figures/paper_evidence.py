@@ -24,6 +24,9 @@ def ranking(folder: Path) -> str:
     """Summary, legend and the first lines of the matrix."""
     blocks = (folder / "readings.md").read_text(encoding="utf-8").split("\n\n")
     _, summary, legend, table = blocks[:4]
+    summary = re.sub(
+        r"The best \d+ are shown; readings.csv has all.", f"The best {SHOWN} are shown.", summary
+    )
     return "\n\n".join((summary, legend, "\n".join(table.splitlines()[: SHOWN + 2])))
 
 

@@ -55,7 +55,7 @@ def test_the_same_command_rebuilds_without_simulating(
     assert [row["ours"] for row in told["rows"][:2]] == ["3.592", "2.78; 1.71"]
     assert {"reading", "rows", "passed", "total", "wall_s"} == set(told)
     assert all(row["note"] for row in told["rows"] if row["passed"] is False)
-    assert "blocked, linear, grown, drag 1.3" in told["reading"]
+    assert "generalised, linear, grown, drag 2.6" in told["reading"]
     assert kept == {file: file.read_bytes() for file in kept}
 
 

@@ -12,7 +12,7 @@ from gyrify.config import Config
 from gyrify.errors import ConfigError
 from gyrify.paper import Case, all_cases
 from gyrify.paper.cases import EQUAL, SOFT
-from gyrify.paper.ensemble import SEEDS, repeat, spread
+from gyrify.paper.ensemble import SEEDS, best_first, repeat, spread
 from gyrify.paper.reading import Mechanics, Reading, grid, point_of, require_gi, variants
 from gyrify.paper.reproduce import reproduce
 
@@ -101,6 +101,17 @@ def test_several_seeds() -> None:
     assert set(found.passes.values()) <= set(range(len(SEEDS) + 1))
     assert found.passes["P1"] == len(SEEDS)
     assert found.score.n == len(SEEDS)
+
+
+def test_ensembles_are_put_in_order_by_their_mean() -> None:
+    bench = FakeBench()
+    found = [repeat(bench, Config(), Reading(one), stability=False) for one in grid()[:20:4]]
+    ordered = best_first(found)
+    means = [one.score.mean for one in ordered]
+    assert means == sorted(means, reverse=True)
+    assert len(set(means)) > 1
+    equal = [one for one in found if one.score.mean == means[0]]
+    assert ordered[: len(equal)] == equal
 
 
 def test_spread_of_few_values() -> None:

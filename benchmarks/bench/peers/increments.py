@@ -36,6 +36,8 @@ class ScikitFemEnergy:
         Growth and stiffness of this increment.
     """
 
+    is_barrier = False
+
     evaluated = 0
 
     def __init__(self, ours: ElasticEnergy, assembler: ScalarBlocks, solid: GrownSolid) -> None:

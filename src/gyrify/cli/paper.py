@@ -126,8 +126,8 @@ def _one(bench: Bench, base: Config, reading: Reading, begun: float, seed: int, 
 def _readings(
     bench: Bench, base: Config, begun: float, minutes: float, seed: int, json: bool, quiet: bool
 ) -> int:
-    """Screen, rank, and repeat the best."""
-    from gyrify.paper.ensemble import repeat
+    """Screen, rank, and repeat the best, which are then put in order by what holds with five seeds."""
+    from gyrify.paper.ensemble import best_first, repeat
     from gyrify.paper.screen import BEST, ScreenProgress, screen
     from gyrify.report.paper import write_report
     from gyrify.report.paper_readings import write_readings
@@ -143,7 +143,7 @@ def _readings(
     if not quiet:
         complain(f"Now {_MORE_SEEDS}." if screening.is_complete else "Time is over: no seeds yet.")
     best = screening.candidates[:BEST] if screening.is_complete else ()
-    ensembles = [repeat(bench, base, candidate.reading) for candidate in best]
+    ensembles = best_first(repeat(bench, base, candidate.reading) for candidate in best)
     if bench.records:
         bench.write()
     files = write_readings(screening, ensembles, bench.folder)

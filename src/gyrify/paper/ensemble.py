@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from statistics import fmean, stdev
 
@@ -111,6 +111,11 @@ def repeat(
     """
     members = [reproduce(bench, base, reading, seed=seed, stability=stability) for seed in seeds]
     return Ensemble(reading, tuple(members))
+
+
+def best_first(ensembles: Iterable[Ensemble]) -> list[Ensemble]:
+    """By the mean number of observations that hold; equals stay in their order."""
+    return sorted(ensembles, key=lambda ensemble: -ensemble.score.mean)
 
 
 def spread(name: str, values: Sequence[float]) -> Spread:

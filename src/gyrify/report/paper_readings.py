@@ -18,7 +18,7 @@ from gyrify.report.paper_tables import MARKS, csv_text, markdown_table, write_te
 
 SHOWN: Final = 40
 _SIGNS: Final = {True: "✓", False: "✗", None: "·"}
-_AXES: Final = ("out_of_plane", "stretch", "energy_per", "dissipation", "number", "element")
+_AXES: Final = ("out_of_plane", "stretch", "energy_per", "dissipation", "number", "element", "imperfection")
 _LEGEND: Final = "✓ holds, ✗ does not, · left open. "
 _WHY_OPEN: Final = (
     "With all that is open such a reading would still not be among the best three: it was not run to the end."
