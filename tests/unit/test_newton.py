@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -88,6 +88,25 @@ def test_barriers_are_projected_before_anything_is_shifted(is_barrier: bool) -> 
     )
     assert solution.stats.factorizations == 2 if is_barrier else solution.stats.factorizations > 2
     assert (solution.u[0, 0] == pytest.approx(0.1 + 0.399 / 3.97, rel=1e-12)) == is_barrier
+
+
+def test_where_no_new_factor_can_be_made_the_old_one_is_forgotten() -> None:
+    """It has been overwritten: a later minimisation must not take it."""
+
+    class Flat(Well):
+        def evaluate(self, u, order, project_psd=False):
+            found = super().evaluate(u, order, project_psd)
+            return replace(found, hessian=Hessian(DIAGONAL, np.zeros(2))) if order >= 2 else found
+
+    model, shared, criterion = QuasiNewton(), system(), Criterion(1e-3, 50)
+    near, far, mass = np.array([[2.001, 0.0]]), np.array([[9.0, 0.0]]), np.ones(2)
+    minimise(TotalEnergy([Well(4.0)]), near, shared, criterion, lambda _: NONE, lambda: None, mass, model)
+    assert model.factor is not None
+    model.carry()
+    total = TotalEnergy([Flat(4.0)])
+    lost = minimise(total, far, shared, criterion, lambda _: NONE, lambda: None, mass, model)
+    assert lost.result is Result.SINGULAR
+    assert model.factor is None
 
 
 def test_convergence_is_quadratic() -> None:

@@ -28,7 +28,6 @@ from gyrify.cli.streams import complain, print_json
 from gyrify.cli.study import study
 from gyrify.cli.table import table
 from gyrify.cli.threshold import threshold
-from gyrify.config.words import shorten
 from gyrify.errors import ConfigError, GyrifyError, HistoryError, MeshError
 
 app = App(
@@ -86,6 +85,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return COMPLETED
     except OSError as fault:
+        from gyrify.config.words import shorten
+
         what = f"{shorten(str(fault.filename or 'A file'), 120)}: {fault.strerror or fault}."
         return _report(HistoryError(what, "Check the path, its permissions and the disk."), tokens)
     finally:

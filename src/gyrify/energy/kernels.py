@@ -113,7 +113,7 @@ def _accumulate(n_dim: int, n_nodes: int, axial: int, digest: int) -> Any:
             load(n_nodes, n_dim, first, n, gradients, g)
             load(n_dim, n_dim, first, n, base, F)
             add_products(n_dim, n_nodes, n, x, g, F)
-            if not invert_all(n_dim, n, F, H, det) > 0.0:
+            if not invert_all(n_dim, n, F, H, det):
                 return np.inf
             invariants(n_dim, first, n, F, det, f33, I1, J, root)
             value += energy(first, n, I1, J, root, mu, kappa, weight, entries)
@@ -199,7 +199,7 @@ def _largest_step(n_dim: int, n_nodes: int, digest: int) -> Any:
             if n_dim == 2:
                 largest = min(largest, step_to_inversion(n, F, D, scratch))
             else:
-                while largest > 1e-12 and not invert_all(n_dim, n, F + largest * D, H, scratch) > 0.0:
+                while largest > 1e-12 and not invert_all(n_dim, n, F + largest * D, H, scratch):
                     largest *= 0.5
         return largest
 

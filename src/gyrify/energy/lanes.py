@@ -60,8 +60,7 @@ def add_products(n_dim, n_nodes, n, x, g, F):
 
 @njit(cache=True, inline="always", error_model="numpy")
 def invert(n_dim, n, F, H, det):
-    """H = F^{-T} and det F; the smallest det F."""
-    smallest = np.inf
+    """H = F^{-T} and det F, and whether that is positive at every point."""
     for l in range(n):
         if n_dim == 2:
             det[l] = F[0, 0, l] * F[1, 1, l] - F[0, 1, l] * F[1, 0, l]
@@ -78,10 +77,10 @@ def invert(n_dim, n, F, H, det):
             for i in range(3):
                 for j in range(3):
                     H[i, j, l] /= det[l]
-        # a comparison that is false for NaN, which must not pass for a volume
-        if not det[l] >= smallest:
-            smallest = det[l]
-    return smallest
+    is_positive = True
+    for l in range(n):
+        is_positive &= det[l] > 0.0  # false for NaN, which must not pass for a volume
+    return is_positive
 
 
 @njit(cache=True, inline="always")

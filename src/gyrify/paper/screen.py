@@ -80,7 +80,8 @@ def screen(
     """Rank readings by the number of observations that hold at once.
 
     All mechanics are screened with linear triangles, the paper's, a small imperfection, and coarse steps of
-    dissipation; then what differs from the best in one thing, until nothing that does is left untried.
+    dissipation; then what differs from the best in its element, its number or its imperfection, until nothing
+    that does is left untried.
 
     Parameters
     ----------

@@ -117,6 +117,9 @@ def minimise(
         is_old = model.serves(at.residual, criterion.force)
         try:
             if not is_old:
+                model.renew(
+                    None
+                )  # a new factor takes the place of the old one in the solver, even if it fails
                 model.renew(hessian.factor(at.u))
             at, result = _step(total, at, model, system)
         except SolveError:
