@@ -42,6 +42,7 @@ def are_volumes(F, H, det):
         ((1.0, 2.0, 3.0), True),
         ((1.0, -1.0, 1.0), False),
         ((1.0, 0.0, 1.0), False),
+        ((np.nan, 1.0, 1.0), False),
         ((-1.0, np.nan, 1.0), False),
     ],
 )

@@ -115,15 +115,7 @@ def minimise(
             break
         iteration += 1
         is_old = model.serves(at.residual, criterion.force)
-        try:
-            if not is_old:
-                model.renew(
-                    None
-                )  # a new factor takes the place of the old one in the solver, even if it fails
-                model.renew(hessian.factor(at.u))
-            at, result = _step(total, at, model, system)
-        except SolveError:
-            result = Result.SINGULAR
+        at, result = _step(total, at, model, system, None if is_old else hessian)
         if is_old and result is not Result.MAX_NEWTON:
             # an old factor may fail where a new one does not
             model.renew(None)
@@ -132,9 +124,18 @@ def minimise(
     return Solution(at.u, result, at.residual, work)
 
 
-def _step(total: TotalEnergy, at: Iterate, model: QuasiNewton, system: System) -> tuple[Iterate, Result]:
-    """Step along the model's direction; the model learns from it."""
-    direction = model.direction(at.gradient)
+def _step(
+    total: TotalEnergy, at: Iterate, model: QuasiNewton, system: System, hessian: DefiniteHessian | None
+) -> tuple[Iterate, Result]:
+    """Step along the model's direction, with a new factor of a Hessian if given; the model learns from it."""
+    try:
+        if hessian is not None:
+            # even one that fails takes the old one's place in the solver
+            model.renew(None)
+            model.renew(hessian.factor(at.u))
+        direction = model.direction(at.gradient)
+    except SolveError:
+        return at, Result.SINGULAR
     step, after, result = _line_search(total, at, direction, system)
     if result is Result.MAX_NEWTON:
         # a shortened step says nothing of the next one
