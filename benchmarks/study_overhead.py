@@ -1,6 +1,6 @@
 """Measures what a study costs beyond its runs: overhead per run, two processes to one, dask to local.
 
-Usage: python benchmarks/study_overhead.py [--runs N] [--dask]
+Usage: python benchmarks/study_overhead.py [--runs N] [--standard] [--dask]
 
 Overhead is the time that a study takes beyond solving and measuring, per run, in one process. Processes are
 begun once per study, not once per run; their start is told apart. Quote only what an idle machine shows.
@@ -28,6 +28,7 @@ SMALL = {
     "solver": {"increments": 8},
 }
 MIDDLE = {"preset": "reference-slice", "mesh": {"n_around": 120}, "solver": {"increments": 40}}
+STANDARD = {"preset": "reference-slice"}
 
 
 def study(base: dict[str, Any], runs: int) -> Study:
@@ -64,9 +65,9 @@ def warm_processes(number: int) -> Iterator[Executor]:
         yield pool
 
 
-def scaling(runs: int) -> float:
+def scaling(base: dict[str, Any], runs: int) -> float:
     """Print the ratio of one process to two; return the time that two take [s]."""
-    case, walls = study(MIDDLE, runs), []
+    case, walls = study(base, runs), []
     for number in (1, 2):
         with warm_processes(number) as pool:
             walls.append(timed(case, executor=pool)[0])
@@ -76,14 +77,14 @@ def scaling(runs: int) -> float:
     return walls[1]
 
 
-def with_dask(runs: int, local: float) -> None:
+def with_dask(base: dict[str, Any], runs: int, local: float) -> None:
     """Print what two dask workers take, against two local processes."""
     from distributed import LocalCluster
 
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
         address = cluster.scheduler_address
-        timed(study(MIDDLE, 4), scheduler=address)
-        wall, _ = timed(study(MIDDLE, runs), scheduler=address)
+        timed(study(base, 4), scheduler=address)
+        wall, _ = timed(study(base, runs), scheduler=address)
     print(f"dask, two workers: {wall:.1f} s, {100 * (wall / local - 1):+.0f} % of local")
 
 
@@ -91,13 +92,15 @@ def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=int, default=24)
+    parser.add_argument("--standard", action="store_true", help="whole standard runs instead of small ones")
     parser.add_argument("--dask", action="store_true")
     options = parser.parse_args()
     print(f"load average before: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
     overhead(8 * options.runs)
-    local = scaling(options.runs)
+    base = STANDARD if options.standard else MIDDLE
+    local = scaling(base, options.runs)
     if options.dask:
-        with_dask(options.runs, local)
+        with_dask(base, options.runs, local)
     print(f"load average after: {os.getloadavg()[0]:.1f}")
 
 

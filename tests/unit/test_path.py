@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from test_newton import NONE, Pull
+from test_growth import Pull
+from test_newton import NONE
 
 from gyrify.solve.newton import Criterion
 from gyrify.solve.path import Path
