@@ -79,8 +79,12 @@ def scaling(base: dict[str, Any], runs: int) -> float:
 
 def with_dask(base: dict[str, Any], runs: int, local: float) -> None:
     """Print what two dask workers take, against two local processes."""
+    import dask
     from distributed import LocalCluster
 
+    # as docs/how-to-cluster.md advises
+    environ = {"MALLOC_TRIM_THRESHOLD_": 2**30, "MALLOC_MMAP_THRESHOLD_": 2**28}
+    dask.config.set({f"distributed.nanny.pre-spawn-environ.{name}": value for name, value in environ.items()})
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
         address = cluster.scheduler_address
         timed(study(base, 4), scheduler=address)
