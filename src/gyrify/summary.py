@@ -14,6 +14,7 @@ import numpy as np
 from gyrify.metrics import Measures, measure
 from gyrify.store.files import fresh
 from gyrify.store.history import History
+from gyrify.validity import config_warnings, run_warnings
 
 
 def measure_state(history: History, index: int = -1) -> Measures:
@@ -127,6 +128,7 @@ def summarise(history: History) -> dict[str, Any]:
             "seed": history.config.seed,
         }
     )
+    summary["warnings"] = [*config_warnings(history.config), *run_warnings(history, summary)]
     return summary
 
 
@@ -160,23 +162,6 @@ def _stability_note(history: History, n_gyri: int) -> str:
     if history.onset is not None and not conservative:
         return "With dissipation, onset is where the stiffness of the tissue itself becomes indefinite."
     return ""
-
-
-def warnings(summary: dict[str, Any]) -> list[str]:
-    """Sentences on what a reader of the summary should not overlook."""
-    found = []
-    nodes = summary["nodes_per_wavelength"]
-    if nodes is not None and nodes < 8.0:
-        found.append(
-            f"A fold spans only {nodes:.1f} points of the contour (8 are needed to resolve it): "
-            "raise mesh.n_around."
-        )
-    if summary["self_intersecting"]:
-        found.append("The contour crosses itself: the state is not physical. Set contact.enabled = true.")
-    note = summary["stability_note"]
-    if "without a loss of stability" in note or "unstable equilibrium" in note:
-        found.append(note)
-    return found
 
 
 def write_metrics(history: History, path: Path) -> None:

@@ -86,7 +86,7 @@ def test_check(tmp_path: Path, capsys: Capture) -> None:
     assert main(["config", "check", str(path)]) == 0
     assert "valid" in capsys.readouterr().out
     code, document, _ = run_json(capsys, "config", "check", str(path))
-    assert (code, document) == (0, {"valid": True, "config_hash": Config().config_hash})
+    assert (code, document) == (0, {"valid": True, "config_hash": Config().config_hash, "warnings": []})
 
 
 def test_schema(capsys: Capture) -> None:

@@ -45,10 +45,14 @@ def test_a_run_writes_its_folder_and_says_what_it_came_to(toml: str, tmp_path: P
     assert all(re.fullmatch(pattern, line) for line in lines)
 
 
-def test_json_is_one_document_and_quiet_is_silent(toml: str, tmp_path: Path, capsys: Capture) -> None:
+def test_json_is_one_document_and_quiet_leaves_nothing_but_warnings(
+    toml: str, tmp_path: Path, capsys: Capture
+) -> None:
     assert main(["run", toml, "--out", str(tmp_path / "run"), "--json", "--quiet"]) == 0
     out, err = capsys.readouterr()
-    assert err == ""
+    warnings = json.loads(out)["warnings"]
+    assert err == "".join(f"gyrify: Warning: {warning}\n" for warning in warnings)
+    assert any("points of the contour" in warning for warning in warnings)
     assert json.loads(out) == json.loads((tmp_path / "run" / "summary.json").read_text())
     assert json.loads(out)["status"] == "completed"
 
@@ -150,7 +154,8 @@ def test_live_bar_on_a_terminal(toml: str, tmp_path: Path) -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="no pseudo-terminal")
 def test_no_bar_on_a_terminal_when_quiet(toml: str, tmp_path: Path) -> None:
     text = in_terminal([*GYRIFY, "run", toml, "--quiet", "--out", str(tmp_path / "run")], columns=80)
-    assert text.startswith("GI ")
+    lines = [line for line in text.splitlines() if not line.startswith("gyrify: Warning: ")]
+    assert lines[0].startswith("GI ")
 
 
 def in_terminal(arguments: list[str], columns: int) -> str:

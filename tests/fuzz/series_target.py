@@ -14,7 +14,7 @@ from target import Target
 
 from gyrify.errors import HistoryError
 from gyrify.store import History
-from gyrify.verify import _check_series
+from gyrify.verify.recheck import _check_series
 
 
 def _opened(*_: object, **__: object) -> NoReturn:

@@ -14,7 +14,8 @@ from gyrify.reevaluation import Increment
 from gyrify.solve.increment import Increments
 from gyrify.solve.problem import State
 from gyrify.solve.result import Result, Solution
-from gyrify.verify import _check_contact, verify
+from gyrify.verify import verify
+from gyrify.verify.recheck import _check_contact
 
 FINE = Increment(0.0, 0.0, 0.0, 1.0, 1.0, True, 0.0, 0.0, 0.0, 0.0, 0.0)
 ROWS: list[dict[str, Any]] = [{"self_intersecting": False, "min_gap_mm": 1.0}] * 3

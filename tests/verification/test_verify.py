@@ -18,7 +18,8 @@ from gyrify.simulation import simulate
 from gyrify.store import History
 from gyrify.store.journal import _digest
 from gyrify.summary import summarise, write_metrics, write_summary
-from gyrify.verify import ENERGY_BOUND, Verification, verify
+from gyrify.verify import Verification, verify
+from gyrify.verify.recheck import ENERGY_BOUND
 
 
 def write_outputs(history: History, folder: Path) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from cyclopts import App
 
 from gyrify.cli.overrides import ConfigPath, Overrides
-from gyrify.cli.streams import print_json, say
+from gyrify.cli.streams import print_json, say, warn
 
 if TYPE_CHECKING:
     from gyrify.config import Config
@@ -54,11 +54,14 @@ def check(config: ConfigPath = None, /, *, overrides: Overrides = DEFAULT, json:
         Print one JSON document.
     """
     from gyrify.meshing import build_mesh
+    from gyrify.validity import config_warnings
 
     resolved = overrides.resolve(config)
     build_mesh(resolved)
+    warnings = config_warnings(resolved)
+    warn(warnings)
     if json:
-        print_json({"valid": True, "config_hash": resolved.config_hash})
+        print_json({"valid": True, "config_hash": resolved.config_hash, "warnings": warnings})
     else:
         say(f"The configuration is valid (hash {resolved.config_hash[:12]}).")
 

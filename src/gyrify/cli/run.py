@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Sequence
 from contextlib import AbstractContextManager, suppress
 from pathlib import Path
 from shlex import quote
@@ -13,7 +14,7 @@ from cyclopts import Parameter
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, STOPPED
 from gyrify.cli.interrupts import Interrupts
 from gyrify.cli.overrides import ConfigPath, Overrides, once, read_value, split_assignment
-from gyrify.cli.streams import complain, print_json, say
+from gyrify.cli.streams import complain, print_json, say, warn
 from gyrify.errors import HistoryError, SolveError
 
 if TYPE_CHECKING:
@@ -88,11 +89,14 @@ def _carry_out(
 ) -> int:
     """Grow, write all derived files whatever the end was, and say what it came to."""
     from gyrify.outputs import write_outputs, write_state
+    from gyrify.validity import config_warnings
 
     with begin as run:
         interrupts.guard(folder)
         if run.note and not quiet:
             complain(run.note)
+        told = config_warnings(run.problem.config)
+        warn(told)
         try:
             _grow(run, interrupts, quiet)
             history = run.history
@@ -103,7 +107,7 @@ def _carry_out(
             if json:
                 print_json({"error": "HistoryError", "message": fault.message, "advice": fault.advice})
             return FAILED
-    _warn(summary, history.fractions[-1], folder, quiet)
+    _tell_end(summary, history.fractions[-1], folder, told)
     if interrupts.requested and summary["status"] != "interrupted":
         complain("Interrupted, but growth had ended: everything is written.")
     if json:
@@ -138,18 +142,14 @@ def _silencer(note: threading.Timer) -> Observer:
     return lambda _: note.cancel()
 
 
-def _warn(summary: dict[str, Any], fraction: float, folder: Path, quiet: bool) -> None:
-    """Say on stderr what a reader of the result must not overlook."""
-    from gyrify.summary import warnings
-
+def _tell_end(summary: dict[str, Any], fraction: float, folder: Path, told: Sequence[str]) -> None:
+    """Say on stderr how it ended, and what a reader of the result must not overlook and was not told yet."""
     if summary["status"] == "interrupted":
         complain(f"Interrupted at {fraction:.1%} of growth; every accepted increment is stored.")
         complain(f"Continue with: gyrify resume {quote(str(folder))}")
     elif summary["status"] != "completed":
         complain(f"The run {summary['status']}: {summary['reason']} {summary['advice']}")
-    if not quiet:
-        for warning in warnings(summary):
-            complain(f"Warning: {warning}")
+    warn(warning for warning in summary["warnings"] if warning not in told)
 
 
 def _report(summary: dict[str, Any], folder: Path) -> None:

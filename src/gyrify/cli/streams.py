@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Iterable
 
 
 def print_json(document: object) -> None:
@@ -16,6 +17,12 @@ def complain(message: str) -> None:
     text = f"gyrify: {_harmless(message)}\n"
     encoding = sys.stderr.encoding or "utf-8"
     sys.stderr.write(text.encode(encoding, "backslashreplace").decode(encoding))
+
+
+def warn(sentences: Iterable[str]) -> None:
+    """Print warnings on stderr; ``--quiet`` and ``--json`` do not silence them."""
+    for sentence in sentences:
+        complain(f"Warning: {sentence}")
 
 
 def say(text: str) -> None:

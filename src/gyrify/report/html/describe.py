@@ -8,7 +8,6 @@ from typing import Any
 from gyrify.config import Config
 from gyrify.config.table import plain, rows
 from gyrify.store.history import History
-from gyrify.summary import warnings
 
 
 def about(history: History, name: str, summary: dict[str, Any]) -> dict[str, Any]:
@@ -37,7 +36,7 @@ def about(history: History, name: str, summary: dict[str, Any]) -> dict[str, Any
         "duration": config.growth.duration,
         "reason": summary["reason"],
         "advice": summary["advice"],
-        "warnings": warnings(summary),
+        "warnings": summary["warnings"],
         "note": summary["stability_note"],
         "numbers": numbers(summary),
         "onset": summary["onset"],

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
 from gyrify.config import Config
-from gyrify.config.words import shorten
 from gyrify.errors import ConfigError, HistoryError
 from gyrify.reevaluation import Increment, reevaluated
-from gyrify.store.derived import read_metrics, read_summary, require_digest
+from gyrify.store.derived import read_summary, require_digest
 from gyrify.store.folder import JOURNAL
 from gyrify.store.history import History
-from gyrify.summary import metrics_rows, summarise
+from gyrify.summary import metrics_rows
+from gyrify.verify.metrics import check_metrics
+from gyrify.verify.result import Check, Verification
 
 # Rounding of a residual over the tolerance that it is compared with.
 RESIDUAL_MARGIN: Final = 1e-3
@@ -26,54 +26,6 @@ RESIDUAL_MARGIN: Final = 1e-3
 ENERGY_BOUND: Final = 0.02
 # Rounding of a sum over all cells.
 DESCENT_BOUND: Final = 1e-10
-# Largest relative difference between a stored and a recomputed metric.
-METRIC_BOUND: Final = 1e-9
-
-
-@dataclass(frozen=True)
-class Check:
-    """One thing that was checked.
-
-    Attributes
-    ----------
-    name : str
-        What was checked.
-    passed : bool
-        Whether it holds.
-    sentence : str
-        What was found.
-    worst, bound : float or None
-        The number closest to failing and where it would fail, if there is one.
-    """
-
-    name: str
-    passed: bool
-    sentence: str
-    worst: float | None = None
-    bound: float | None = None
-
-
-@dataclass(frozen=True)
-class Verification:
-    """All checks of one run."""
-
-    checks: tuple[Check, ...]
-
-    @property
-    def passed(self) -> bool:
-        """Whether every check holds."""
-        return all(check.passed for check in self.checks)
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values, fit for JSON."""
-        return {"passed": self.passed, "checks": [dict(vars(check)) for check in self.checks]}
-
-    def __str__(self) -> str:
-        lines = [
-            f"{'ok    ' if check.passed else 'FAILED'} {check.name}: {check.sentence}"
-            for check in self.checks
-        ]
-        return "\n".join(lines)
 
 
 def verify(run: str | Path) -> Verification:
@@ -115,7 +67,7 @@ def verify(run: str | Path) -> Verification:
         checks.append(_check_balance(increments))
     if history.config.contact.enabled:
         checks += _check_contact(increments, rows, _jumps(history))
-    checks += _check_metrics(history, folder, rows, summary)
+    checks += check_metrics(history, folder, rows, summary)
     return Verification(tuple(checks))
 
 
@@ -250,48 +202,3 @@ def _check_balance(increments: list[Increment]) -> Check:
         f"{bound:.2g})."
     )
     return Check("energy balance", created <= bound, sentence, created, bound)
-
-
-def _check_metrics(
-    history: History, folder: Path, rows: list[dict[str, Any]], summary: dict[str, Any] | None
-) -> Iterator[Check]:
-    """Stored metrics against recomputed ones."""
-    path = folder / "metrics.csv"
-    if path.is_file():
-        try:
-            stored = read_metrics(path)
-        except HistoryError as damaged:
-            yield Check("metrics.csv", False, str(damaged))
-            return
-        found = {str(n): row for n, row in enumerate(rows)}
-        yield _compare("metrics.csv", stored, found)
-    if summary is not None:
-        yield _compare("summary.json", summary, summarise(history))
-
-
-def _compare(name: str, stored: dict[str, Any], found: dict[str, Any]) -> Check:
-    differing = list(_differences(stored, found, ""))
-    if not differing:
-        return Check(name, True, f"Equals what the states give, to {METRIC_BOUND:g}.", 0.0, METRIC_BOUND)
-    more = f" and {len(differing) - 1} more" if len(differing) > 1 else ""
-    return Check(name, False, f"Differs from what the states give: {differing[0]}{more}.")
-
-
-def _differences(stored: Any, found: Any, place: str) -> Iterator[str]:
-    """Names of the values that differ, tables opened."""
-    if isinstance(stored, dict) and isinstance(found, dict):
-        for key in sorted({*stored, *found}):
-            inner = f"{place}.{key}" if place else str(key)
-            yield from _differences(stored.get(key, "missing"), found.get(key, "missing"), inner)
-    elif not _is_equal(stored, found):
-        yield f"{shorten(place)} = {shorten(str(stored))}, not {shorten(str(found))}"
-
-
-def _is_equal(stored: Any, found: Any) -> bool:
-    """Equal as text (CSV holds nothing else), or as numbers up to rounding."""
-    if stored == found or str(stored) == str(found) or (stored == "" and found is None):
-        return True
-    try:
-        return math.isclose(float(stored), float(found), rel_tol=METRIC_BOUND, abs_tol=1e-12)
-    except (TypeError, ValueError, OverflowError):
-        return False

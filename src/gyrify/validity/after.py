@@ -1,0 +1,59 @@
+"""What a run has come to, and a reader of its numbers should not overlook."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Final
+
+if TYPE_CHECKING:
+    from gyrify.store.history import History
+
+# Points of the contour that a fold needs to be resolved.
+POINTS_PER_FOLD: Final = 8.0
+
+
+def run_warnings(history: History, summary: dict[str, Any]) -> list[str]:
+    """Sentences on what a reader of a run's numbers should not overlook.
+
+    Parameters
+    ----------
+    history : History
+        The run, complete or not.
+    summary : dict
+        Its summary, but for the warnings.
+
+    Returns
+    -------
+    list of str
+        Empty where nothing is to be said.
+    """
+    return [sentence for check in CHECKS for sentence in check(history, summary)]
+
+
+def _resolution(_: History, summary: dict[str, Any]) -> list[str]:
+    nodes = summary["nodes_per_wavelength"]
+    if nodes is None or nodes >= POINTS_PER_FOLD:
+        return []
+    return [
+        f"A fold spans only {nodes:.1f} points of the contour (8 are needed to resolve it): "
+        "raise mesh.n_around."
+    ]
+
+
+def _crossing(_: History, summary: dict[str, Any]) -> list[str]:
+    if not summary["self_intersecting"]:
+        return []
+    return ["The contour crosses itself: the state is not physical. Set contact.enabled = true."]
+
+
+def _stability(_: History, summary: dict[str, Any]) -> list[str]:
+    note = summary["stability_note"]
+    is_told = "without a loss of stability" in note or "unstable equilibrium" in note
+    return [note] if is_told else []
+
+
+CHECKS: Final[tuple[Callable[[History, dict[str, Any]], list[str]], ...]] = (
+    _resolution,
+    _crossing,
+    _stability,
+)

@@ -1,0 +1,27 @@
+"""What a configuration tells before anything is computed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from gyrify.config import Config
+
+CHECKS: Final[tuple[Callable[[Config], list[str]], ...]] = ()
+
+
+def config_warnings(config: Config) -> list[str]:
+    """Sentences on what is legal, but outside what was verified.
+
+    Parameters
+    ----------
+    config : Config
+        Every number of the run.
+
+    Returns
+    -------
+    list of str
+        Each says what, why, and what to do about it; empty where nothing is to be said.
+    """
+    return [sentence for check in CHECKS for sentence in check(config)]
