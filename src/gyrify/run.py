@@ -7,10 +7,11 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 
-from gyrify.detection import Detector
 from gyrify.errors import GyrifyError, HistoryError, LimitReachedError, SolveError
 from gyrify.limits import Watch
 from gyrify.model import Slice
+from gyrify.onset.detector import Detector
+from gyrify.onset.relaxation import relax
 from gyrify.solve.linear import linear_solver
 from gyrify.solve.problem import State
 from gyrify.solve.quasistatic import grow
@@ -96,12 +97,17 @@ class Run:
             If the disk is full.
         """
         self.journal.set_meta(
-            status="running", reason="", advice="", stable="", linear_solver=self._linear_solver()
+            status="running",
+            reason="",
+            advice="",
+            stable="",
+            relaxed="",
+            linear_solver=self._linear_solver(),
         )
         try:
             self.problem.compile()  # memory may run out even here
             self._accept(tuple(observers), watch)
-            self.journal.set_meta(status="completed", stable=self._is_stable())
+            self.journal.set_meta(status="completed", **self._last_state(watch))
         except LimitReachedError as limit:
             self.journal.set_meta(status="stopped", reason=limit.message, advice=limit.advice)
         except KeyboardInterrupt:
@@ -120,18 +126,23 @@ class Run:
             self._record("failed", reason, "Once its cause is removed, continue with `gyrify resume`.")
             raise
 
-    def _is_stable(self) -> str:
-        """Whether the last state is stable without dissipation: seen by the detection, or looked at now."""
+    def _last_state(self, watch: Watcher) -> dict[str, str]:
+        """Whether the last state stays as it is, and what it relaxes to where dissipation holds it back."""
         last = len(self.journal) - 1
+        state, fraction = self.journal.state(last), 1.0
         known = self.journal.negative_pivots.get(last)
         if known is not None:
-            return "false" if known else "true"
-        state = self.journal.state(last)
-        try:
-            stable = self.problem.is_stable(state.position / self.problem.stepping.end, state.u)
-        except SolveError:  # growth has come to its end all the same
-            return ""
-        return "true" if stable else "false"
+            return {"stable": "false" if known else "true"}
+        try:  # whatever comes of it, growth has come to its end
+            if self.problem.is_conservative:
+                return {"stable": _word(self.problem.is_stable(fraction, state.u))}
+            if self.problem.config.stability.detect:
+                relaxed = relax(self.problem, fraction, state.u, self._look(watch))
+                if relaxed is not None:
+                    return {"stable": _word(relaxed.is_kept), "relaxed": relaxed.to_text()}
+        except (SolveError, LimitReachedError):
+            pass
+        return {}
 
     def _linear_solver(self) -> str:
         """Library that solves; the one that the run began with, or its end would be another."""
@@ -153,28 +164,43 @@ class Run:
         problem, stepping = self.problem, self.problem.stepping
         state = self.journal.state(len(self.journal) - 1)
         start, begun = state.position / stepping.end, time.perf_counter()
-
-        def look() -> None:
-            watch()
-            self._limits()
-
-        detector = Detector(problem, stepping, self.journal.onset is not None, self.journal.state, look)
-        inspect = detector.inspect if problem.config.stability.detect else lambda _, accepted: accepted
+        look = self._look(watch)
+        detector = (
+            Detector(problem, stepping, state.position, look) if problem.config.stability.detect else None
+        )
+        inspect = detector.inspect if detector else lambda _, accepted: accepted
         clock = begun
         try:
             for accepted in grow(problem, stepping, state, look, inspect, self.journal.state):
                 now = time.perf_counter()
-                self.journal.append(accepted, now - clock, detector.n_negative, detector.onset)
+                self.journal.append(accepted, now - clock, *(detector.found if detector else ()))
                 clock = now
                 progress = Progress(problem, accepted, accepted.position / stepping.end, now - begun, start)
                 for observer in observers:
                     observer(progress)
         except SolveError:
-            if detector.onset is not None:
-                self.journal.set_onset(detector.onset)
+            if detector and detector.onset is not None:
+                self.journal.set_onset(detector.onset, detector.changes)
             raise
+        finally:
+            if detector and detector.search.lost_at is not None:
+                with suppress(HistoryError):
+                    self.journal.set_meta(smooth_until=repr(detector.search.lost_at))
+
+    def _look(self, watch: Watcher) -> Watcher:
+        """What is called at each iteration: the caller's, and the limits."""
+
+        def look() -> None:
+            watch()
+            self._limits()
+
+        return look
 
     def _record(self, status: str, reason: str, advice: str) -> None:
         """Note how the run ended; what ended it may keep even that from being written."""
         with suppress(HistoryError):
             self.journal.set_meta(status=status, reason=reason, advice=advice)
+
+
+def _word(value: bool) -> str:
+    return "true" if value else "false"

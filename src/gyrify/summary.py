@@ -6,12 +6,15 @@ import csv
 import json
 import math
 import os
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from gyrify.metrics import Measures, measure
+from gyrify.onset.visible import visible_time
+from gyrify.solve.stability import StabilityChange
 from gyrify.store.files import fresh
 from gyrify.store.history import History
 from gyrify.validity import config_warnings, run_warnings
@@ -97,7 +100,7 @@ def summarise(history: History) -> dict[str, Any]:
     """
     measures = measure_state(history)
     min_J, min_J_elastic = volume_extremes(history)
-    stats = history.stats
+    stats, visible = history.stats, visible_time(history)
     summary: dict[str, Any] = _without_infinities(
         {
             "status": history.status,
@@ -110,7 +113,10 @@ def summarise(history: History) -> dict[str, Any]:
             "min_J": min_J,
             "min_J_elastic": min_J_elastic,
             "nodes_per_wavelength": _nodes_per_wavelength(history, measures),
-            "onset": _onset(history),
+            "onset": _onset(history, visible),
+            "stability_changes": [_change(change) for change in history.stability_changes],
+            "visible_growth_time": visible,
+            "relaxed": None if history.relaxed is None else asdict(history.relaxed),
             "stable": history.stable,
             "stability_note": _stability_note(history, measures.n_gyri),
             "solver": {
@@ -132,36 +138,58 @@ def summarise(history: History) -> dict[str, Any]:
     return summary
 
 
-def _onset(history: History) -> dict[str, Any] | None:
+def _onset(history: History, visible: float | None) -> dict[str, Any] | None:
     onset = history.onset
     if onset is None:
         return None
     return {
         "growth_time": onset.growth_time,
+        "kind": onset.kind,
         "mode_number": onset.mode_number,
-        "wavelength_mm": onset.wavelength,
+        "wavelength_mm": onset.wavelength or None,
         "eigenvalue": onset.eigenvalue,
+        "visible_delay": None if visible is None else visible - onset.growth_time,
+    }
+
+
+def _change(change: StabilityChange) -> dict[str, Any]:
+    return {
+        "growth_time": change.growth_time,
+        "bracket": list(change.bracket),
+        "n_unstable": [change.n_before, change.n_after],
+        "kind": change.kind,
+        "mode_number": change.mode_number,
+        "wavelength_mm": change.wavelength or None,
     }
 
 
 def _stability_note(history: History, n_gyri: int) -> str:
     """What a reader of ``onset`` and ``stable`` should know."""
-    conservative = history.slice.is_conservative
-    if history.stable is False and conservative:
+    onset, relaxed, until = history.onset, history.relaxed, history.smooth_until
+    if history.stable is False and history.slice.is_conservative:
         return (
             "The final state is an unstable equilibrium: an arbitrarily small disturbance leaves it. "
             "Set stability.follow_branch = true."
         )
-    if history.onset is None and not history.config.stability.detect:
+    if not history.config.stability.detect:
         return "The loss of stability was not looked for (stability.detect = false)."
-    if history.onset is None and n_gyri > 0:
-        return (
-            "The slice folded without a loss of stability at any increment: node jitter unfolds the "
-            "bifurcation. `gyrify threshold` locates it on the smooth branch."
+    sentences = []
+    if onset is not None:
+        sentences.append(
+            "Onset is where the smooth equilibrium, without node jitter and dissipation, loses stability."
         )
-    if history.onset is not None and not conservative:
-        return "With dissipation, onset is where the stiffness of the tissue itself becomes indefinite."
-    return ""
+    elif until is not None:
+        sentences.append(
+            f"The onset is not known: the smooth equilibrium was followed to growth time {until:.6g} only."
+        )
+    elif n_gyri > 0:
+        sentences.append("The slice has gyri, although its smooth equilibrium is stable on this mesh.")
+    if relaxed is not None and not relaxed.is_kept:
+        sentences.append(
+            f"The final state is held by dissipation: without it, it would become another one, with "
+            f"{relaxed.n_gyri} gyri and a gyrification index of {relaxed.gi_closing:.3f}."
+        )
+    return " ".join(sentences)
 
 
 def write_metrics(history: History, path: Path) -> None:

@@ -21,7 +21,7 @@ NUMERICS: Final = (
     "tissue",
     "model",
     "solve",
-    "detection",
+    "onset",
     "run",
     "metrics",
     "summary",

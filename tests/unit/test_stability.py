@@ -12,7 +12,7 @@ from gyrify.model import Slice
 from gyrify.solve.branch import leave
 from gyrify.solve.linear import linear_solver
 from gyrify.solve.stability import Tangent
-from gyrify.threshold.smooth import grown
+from gyrify.onset.smooth import grown
 
 SMALL = {
     "geometry.shape": "circle",

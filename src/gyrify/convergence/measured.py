@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from gyrify.metrics import Measures, gyrification_index
+from gyrify.metrics import Measures
+from gyrify.onset.visible import visible_time
 from gyrify.store.history import History
 from gyrify.summary import measure_state
-
-# Gyrification index by the closing from which folds are seen.
-VISIBLE: Final = 1.005
 
 
 @dataclass(frozen=True)
@@ -66,7 +64,7 @@ def measured(history: History) -> dict[str, float | None]:
     -------
     dict
         By the keys of `METRICS`; None where there is none. ``visible_growth_time`` is the growth time at
-        which the index by the closing passes `VISIBLE`, interpolated between increments;
+        which the index by the closing passes `gyrify.onset.visible.VISIBLE`, interpolated between increments;
         ``onset_growth_time`` that at which the tissue's stiffness loses definiteness on the path of the run,
         often late or never where node jitter unfolds the bifurcation.
     """
@@ -82,23 +80,6 @@ def measured(history: History) -> dict[str, float | None]:
         "sulcal_depth_mm_mean": measures.sulcal_depth_mean,
         "elastic_energy_mJ_per_mm": elastic_energy(history),
     }
-
-
-def visible_time(history: History, level: float = VISIBLE) -> float | None:
-    """Growth time at which the index by the closing first passes a level; None where it never does."""
-    radius, times = history.config.metrics.closing_radius, history.growth_times
-    is_closed = history.mesh.period is None
-    last = 1.0
-    for index in range(len(history)):
-        if is_closed:
-            now = gyrification_index(history.contour(index), closing_radius=radius)
-        else:
-            now = measure_state(history, index).gi_closing
-        if now > level:
-            start, end = (float(times[max(index - 1, 0)]), float(times[index]))
-            return start + (level - last) / (now - last) * (end - start) if last <= level else end
-        last = now
-    return None
 
 
 def elastic_energy(history: History) -> float:

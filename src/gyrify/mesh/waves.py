@@ -26,7 +26,7 @@ def normal_displacement(mesh: Mesh, u: FloatArray, du: FloatArray) -> FloatArray
     (n_contour,) float array
         Positive outwards, in the unit of ``du``.
     """
-    edges = _edges(mesh, u)
+    edges = contour_edges(mesh, u)
     tangent = edges + np.roll(edges, 1, axis=0)
     normal = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
@@ -48,20 +48,22 @@ def dominant_wave(mesh: Mesh, u: FloatArray, du: FloatArray) -> tuple[int, float
     Returns
     -------
     mode_number : int
-        Number, at least 1, of the largest Fourier coefficient of the normal displacement over arc length:
-        waves around the contour, or along one period of a strip.
+        Number of the wave of largest amplitude in the normal displacement over arc length, 0 for a uniform
+        one: waves around the contour, or along one period of a strip.
     wavelength : float
-        Deformed length of the contour over the mode number [mm].
+        Deformed length of the contour over the mode number [mm]; 0 where that is 0.
     """
-    lengths = np.linalg.norm(_edges(mesh, u), axis=1)
+    lengths = np.linalg.norm(contour_edges(mesh, u), axis=1)
     arc, length = np.cumsum(lengths) - lengths, float(lengths.sum())
     at = np.arange(_SAMPLES) * (length / _SAMPLES)
     height = np.interp(at, arc, normal_displacement(mesh, u, du), period=length)
-    mode_number = 1 + int(np.argmax(np.abs(np.fft.rfft(height))[1:]))
-    return mode_number, length / mode_number
+    amplitude = np.abs(np.fft.rfft(height))
+    amplitude[0] *= 0.5  # a wave has a coefficient at its negative number too
+    mode_number = int(np.argmax(amplitude))
+    return mode_number, length / mode_number if mode_number else 0.0
 
 
-def _edges(mesh: Mesh, u: FloatArray) -> FloatArray:
+def contour_edges(mesh: Mesh, u: FloatArray) -> FloatArray:
     """(n_contour, 2) deformed edges [mm], the last one back to the first point or across the period."""
     x = mesh.points[mesh.contour] + u[mesh.contour]
     edges = np.roll(x, -1, axis=0) - x

@@ -51,7 +51,7 @@ class Eigenpair:
 
 @dataclass(frozen=True, eq=False)
 class Onset:
-    """Where a path first loses stability.
+    """Where the smooth equilibrium of the tissue first loses stability, without node jitter and dissipation.
 
     Attributes
     ----------
@@ -66,9 +66,11 @@ class Onset:
     wavelength : float
         Deformed length of the contour over the mode number [mm].
     displacement : (n_points, n_dim) float array
-        The state [mm].
+        The state [mm], from the points of the run's own mesh.
     vector : (n_points, n_dim) float array
         The mode, as in `Eigenpair` [1/mm]; where it is largest normal to the contour, it points outwards.
+    kind : str
+        What the mode moves; see `gyrify.onset.modes.Wave`.
     """
 
     growth_time: float
@@ -78,6 +80,36 @@ class Onset:
     wavelength: float
     displacement: FloatArray
     vector: FloatArray
+    kind: str = "fold"
+
+
+@dataclass(frozen=True)
+class StabilityChange:
+    """A change in the number of modes along which the smooth equilibrium is unstable.
+
+    Attributes
+    ----------
+    growth_time : float
+        Growth time [time]: located where stability is lost or regained, else the middle of the bracket.
+    bracket : (float, float)
+        Growth times between which it lies [time].
+    n_before, n_after : int
+        Negative eigenvalues of the stiffness there.
+    kind : str
+        What the mode that changes sides moves; see `gyrify.onset.modes.Wave`.
+    mode_number : int
+        Waves along the contour.
+    wavelength : float
+        Deformed length of the contour over the mode number [mm]; 0 where that is 0.
+    """
+
+    growth_time: float
+    bracket: tuple[float, float]
+    n_before: int
+    n_after: int
+    kind: str
+    mode_number: int
+    wavelength: float
 
 
 class Tangent:
@@ -140,16 +172,34 @@ class Tangent:
         SolveError
             If none is found to the tolerance.
         """
-        factor, root = self._definite(guess), np.sqrt(self.mass)
+        return self._nearest(self._definite(guess), "LA")
+
+    def _nearest(self, factor: Factor, which: str) -> Eigenpair:
+        """Eigenpair at one end of the spectrum of a factor's inverse."""
+        root = np.sqrt(self.mass)
         n = root.size
         inverse = sla.LinearOperator((n, n), matvec=lambda x: root * factor.solve(root * x.ravel()))
         start = np.random.default_rng(0).standard_normal(n)
         try:
-            _, vectors = sla.eigsh(inverse, k=1, which="LA", v0=start, ncv=_LANCZOS_VECTORS, tol=_TOLERANCE)
+            _, vectors = sla.eigsh(inverse, k=1, which=which, v0=start, ncv=_LANCZOS_VECTORS, tol=_TOLERANCE)
         except sla.ArpackNoConvergence as failure:
             raise _unfound(f"the Lanczos iteration did not converge ({failure})") from failure
         v = vectors[:, 0] / root
         return self._checked(v / np.sqrt(v @ (self.mass * v)))
+
+    def latest(self) -> Eigenpair:
+        """Negative eigenvalue nearest to zero, with its vector: that of the mode which turned last.
+
+        Raises
+        ------
+        SolveError
+            If none is found to the tolerance, or there is none.
+        """
+        factor = self._system.factorise_data(self._data)
+        pair = self._nearest(factor, "SA")
+        if pair.eigenvalue >= 0.0:
+            raise _unfound("no eigenvalue is negative")
+        return pair
 
     def _definite(self, guess: float) -> Factor:
         """Factor of K, or of K + tau M where K is not positive definite; later calls make it invalid."""

@@ -14,9 +14,10 @@ from gyrify.config import Config
 from gyrify.errors import HistoryError
 from gyrify.mesh import Mesh
 from gyrify.model import Slice
+from gyrify.onset.relaxation import Relaxation
 from gyrify.solve.problem import TICKS
 from gyrify.solve.result import Stats
-from gyrify.solve.stability import Onset
+from gyrify.solve.stability import Onset, StabilityChange
 from gyrify.solve.types import FloatArray
 from gyrify.store.database import RERUN
 from gyrify.store.journal import Journal
@@ -225,18 +226,41 @@ class History:
 
     @property
     def stable(self) -> bool | None:
-        """Whether the last state is a stable equilibrium of the tissue alone; None while unknown."""
+        """Whether the last state keeps its folds once growth stops; None while unknown.
+
+        Without dissipation: whether it is a stable equilibrium. With it: whether the state that it relaxes to
+        has the same folds (`relaxed`).
+        """
         known = self.journal.meta("stable")
         return known == "true" if known else None
 
     @property
     def onset(self) -> Onset | None:
-        """Where the path first lost stability; None where it did not, or was not looked at.
+        """Where the smooth equilibrium first loses stability; None where it does not, or none was looked for.
 
-        With dissipation this is where the tissue's own stiffness, on the path that lags behind, ceases to be
-        positive definite. With node jitter the bifurcation is unfolded, so that onset comes late or never.
+        It is that of the slice without node jitter and dissipation, on the run's own mesh, and the same for
+        every drag number. It is known as soon as growth has passed it.
         """
         return self.journal.onset
+
+    @property
+    def stability_changes(self) -> tuple[StabilityChange, ...]:
+        """Every change in the number of unstable modes of the smooth equilibrium that growth has passed."""
+        return self.journal.stability_changes
+
+    @property
+    def smooth_until(self) -> float | None:
+        """Growth time at which the smooth equilibrium ends or folds by degrees; None where it goes on."""
+        try:
+            found = float(self.journal.meta("smooth_until"))
+        except ValueError:
+            return None
+        return found if np.isfinite(found) else None
+
+    @property
+    def relaxed(self) -> Relaxation | None:
+        """What the last state of a run with dissipation relaxes to once growth stops; None while unknown."""
+        return Relaxation.from_text(self.journal.meta("relaxed"))
 
     @property
     def negative_pivots(self) -> dict[int, int]:

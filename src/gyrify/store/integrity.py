@@ -6,6 +6,7 @@ hold views that never end, numbers that are text, or arrays of no mesh: these ar
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 import sqlite3
@@ -15,11 +16,22 @@ from typing import Any, Final
 import numpy as np
 
 from gyrify.errors import HistoryError
+from gyrify.solve.stability import StabilityChange
 
 # Largest value that a database hands out: beyond the displacement of the largest mesh, in bytes.
 MAX_VALUE: Final = 512 * 2**20
 STATUSES: Final = ("running", "completed", "failed", "stopped", "interrupted")
-_WORDS: Final = ("status", "reason", "advice", "stable", "linear_solver", "config", "versions")
+_WORDS: Final = (
+    "status",
+    "reason",
+    "advice",
+    "stable",
+    "relaxed",
+    "smooth_until",
+    "linear_solver",
+    "config",
+    "versions",
+)
 _LONGEST_TEXT: Final = 1_000_000
 _ADVICE: Final = "Restore the journal from a copy, or run again with --overwrite."
 
@@ -30,8 +42,8 @@ def confine(connection: sqlite3.Connection) -> None:
     connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_VALUE)
 
 
-def require_schema(connection: sqlite3.Connection, schema: str, name: str) -> None:
-    """Refuse a database that has anything but the tables of a journal.
+def require_schema(connection: sqlite3.Connection, schemas: tuple[str, ...], name: str) -> None:
+    """Refuse a database that has anything but the tables of a journal, of this version or an earlier one.
 
     Raises
     ------
@@ -39,7 +51,7 @@ def require_schema(connection: sqlite3.Connection, schema: str, name: str) -> No
         If a table differs, is missing or is one too many, or there are views or triggers.
     """
     found = set(connection.execute("SELECT type, name, sql FROM sqlite_master"))
-    if found != _tables(schema):
+    if all(found != _tables(schema) for schema in schemas):
         raise HistoryError(f"The journal {name} is damaged: its tables are not those of a run.", _ADVICE)
 
 
@@ -98,6 +110,20 @@ def is_sound(row: tuple[Any, ...], position_before: int) -> bool:
     return pairs.size == 0 or bool(pairs.min() >= 0 and pairs.max() < len(u) // 16)
 
 
+def is_sound_change(change: StabilityChange) -> bool:
+    """Whether a change of stability holds numbers, and words that there are."""
+    numbers = (change.growth_time, *change.bracket, change.wavelength)
+    whole = (change.n_before, change.n_after, change.mode_number)
+    return (
+        all(isinstance(value, float | int) and math.isfinite(value) for value in numbers)
+        and all(type(value) is int and value >= 0 for value in whole)
+        and isinstance(change.kind, str)
+        and change.kind.isascii()
+        and change.kind.isalpha()
+        and len(change.kind) <= 20
+    )
+
+
 def is_sound_onset(row: tuple[Any, ...], n_bytes: int) -> bool:
     """Whether the onset holds numbers, and arrays of a state of ``n_bytes``."""
     numbers, whole, (displacement, vector) = (*row[1:5], row[6]), row[5], row[7:9]
@@ -108,3 +134,15 @@ def is_sound_onset(row: tuple[Any, ...], n_bytes: int) -> bool:
         and len(displacement) == len(vector)
         and n_bytes - 16 <= len(displacement) <= n_bytes
     )
+
+
+def sealed(meta: dict[str, str]) -> dict[str, str]:
+    """Facts with a checksum of the configuration, where it is one of them."""
+    if "config" not in meta:
+        return meta
+    return {**meta, "seal": hashlib.blake2b(meta["config"].encode(), digest_size=16).hexdigest()}
+
+
+def digest(numbers: tuple[Any, ...], u: bytes, couplings: bytes) -> bytes:
+    """Checksum of a row of increments."""
+    return hashlib.blake2b(repr(numbers).encode() + u + couplings, digest_size=16).digest()

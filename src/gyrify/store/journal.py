@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import sqlite3
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import astuple
 from pathlib import Path
@@ -20,11 +21,20 @@ import numpy as np
 from gyrify.errors import HistoryError
 from gyrify.solve.problem import State
 from gyrify.solve.result import Stats
-from gyrify.solve.stability import Onset
+from gyrify.solve.stability import Onset, StabilityChange
 from gyrify.solve.types import FloatArray
 from gyrify.store import onset_rows
 from gyrify.store.database import RERUN, connect, transaction, translated
-from gyrify.store.integrity import confine, is_sound, is_sound_onset, require_facts, require_schema
+from gyrify.store.integrity import (
+    confine,
+    digest,
+    is_sound,
+    is_sound_change,
+    is_sound_onset,
+    require_facts,
+    require_schema,
+    sealed,
+)
 
 FORMAT: Final = 1
 _APPLICATION_ID: Final = 0x67797269  # "gyri"
@@ -46,6 +56,7 @@ CREATE TABLE increments (
     digest BLOB NOT NULL
 );
 """
+_TABLES: Final = _SCHEMA + onset_rows.SCHEMA + onset_rows.CHANGES
 
 
 class Journal:
@@ -79,9 +90,9 @@ class Journal:
                 connection.execute("PRAGMA journal_mode = WAL")
                 connection.execute("PRAGMA synchronous = NORMAL")
                 with transaction(connection):
-                    for statement in filter(str.strip, (_SCHEMA + onset_rows.SCHEMA).split(";")):
+                    for statement in filter(str.strip, _TABLES.split(";")):
                         connection.execute(statement)
-                    connection.executemany("INSERT INTO meta VALUES (?, ?)", _sealed(meta).items())
+                    connection.executemany("INSERT INTO meta VALUES (?, ?)", sealed(meta).items())
                     connection.execute(f"PRAGMA application_id = {_APPLICATION_ID}")
                     connection.execute(f"PRAGMA user_version = {FORMAT}")
         except HistoryError as fault:
@@ -125,7 +136,7 @@ class Journal:
                 "Use the version of gyrify that wrote it (see `versions` in summary.json), or run again.",
             )
         with translated(str(path)):
-            require_schema(connection, _SCHEMA + onset_rows.SCHEMA, str(path))
+            require_schema(connection, (_TABLES, _SCHEMA + onset_rows.SCHEMA), str(path))
         journal = Journal(connection, path)
         journal.check()
         return journal
@@ -151,8 +162,9 @@ class Journal:
             meta = dict(self._connection.execute("SELECT key, value FROM meta"))
             onset = self._connection.execute("SELECT * FROM onset").fetchone()
             pivots = self._connection.execute("SELECT number, n_negative FROM stability").fetchall()
+            changes = onset_rows.read_changes(self._connection)
         require_facts(meta, self.name)
-        if "seal" in meta and _sealed({"config": str(meta.get("config"))})["seal"] != meta["seal"]:
+        if "seal" in meta and sealed({"config": str(meta.get("config"))})["seal"] != meta["seal"]:
             raise HistoryError(f"The configuration in {self.name} is damaged: its checksum differs.", RERUN)
         position, n_bytes = -1, 0
         for number in range(len(self)):
@@ -160,8 +172,10 @@ class Journal:
             if not is_sound(row, position) or (number > 0 and len(row[10]) != n_bytes):
                 raise HistoryError(f"Increment {number} in {self.name} is none of a run.", RERUN)
             position, n_bytes = row[1], len(row[10])
-        if not all(type(value) is int for pair in pivots for value in pair) or (
-            onset is not None and not is_sound_onset(onset, n_bytes)
+        if not (
+            all(type(value) is int for pair in pivots for value in pair)
+            and (onset is None or is_sound_onset(onset, n_bytes))
+            and all(map(is_sound_change, changes))
         ):
             raise HistoryError(f"What {self.name} says of stability is none of a run.", RERUN)
 
@@ -174,10 +188,15 @@ class Journal:
     def set_meta(self, **values: str) -> None:
         """Record facts in one transaction."""
         with translated(self.name), transaction(self._connection):
-            self._connection.executemany("INSERT OR REPLACE INTO meta VALUES (?, ?)", _sealed(values).items())
+            self._connection.executemany("INSERT OR REPLACE INTO meta VALUES (?, ?)", sealed(values).items())
 
     def append(
-        self, state: State, wall_s: float, n_negative: int | None = None, onset: Onset | None = None
+        self,
+        state: State,
+        wall_s: float,
+        n_negative: int | None = None,
+        onset: Onset | None = None,
+        changes: Sequence[StabilityChange] = (),
     ) -> None:
         """Record an accepted increment, and what was found of its stability, in one transaction."""
         u = np.ascontiguousarray(state.u, dtype="<f8").tobytes()
@@ -190,25 +209,32 @@ class Journal:
             state.residual,
             *astuple(state.stats),
         )
-        row = (*numbers, wall_s, u, couplings, _digest(numbers, u, couplings))
+        row = (*numbers, wall_s, u, couplings, digest(numbers, u, couplings))
         with translated(self.name), transaction(self._connection):
             self._connection.execute(f"INSERT INTO increments VALUES ({','.join('?' * len(row))})", row)
             if n_negative is not None:
                 self._connection.execute("INSERT INTO stability VALUES (?, ?)", (state.index, n_negative))
             if onset is not None:
                 self._connection.execute(onset_rows.INSERT, onset_rows.to_row(onset))
+            onset_rows.add_changes(self._connection, changes)
 
-    def set_onset(self, onset: Onset) -> None:
+    def set_onset(self, onset: Onset, changes: Sequence[StabilityChange]) -> None:
         """Record the onset in a transaction of its own, where its increment is not accepted."""
         with translated(self.name), transaction(self._connection):
             self._connection.execute(onset_rows.INSERT, onset_rows.to_row(onset))
+            onset_rows.add_changes(self._connection, changes)
 
     @property
     def onset(self) -> Onset | None:
         """Where the path first lost stability, if it is known to have."""
         with translated(self.name):
-            row = self._connection.execute("SELECT * FROM onset").fetchone()
-        return None if row is None else onset_rows.from_row(row)
+            return onset_rows.read_onset(self._connection)
+
+    @property
+    def stability_changes(self) -> tuple[StabilityChange, ...]:
+        """Every change of stability of the smooth equilibrium that growth has passed, in order."""
+        with translated(self.name):
+            return onset_rows.read_changes(self._connection)
 
     @property
     def negative_pivots(self) -> dict[int, int]:
@@ -267,7 +293,7 @@ class Journal:
                 f"The journal {self.name} has no increment {number}.", f"It holds {len(self)}."
             )
         is_bytes = isinstance(row[10], bytes) and isinstance(row[11], bytes)
-        if not is_bytes or _digest(row[:9], row[10], row[11]) != row[12]:
+        if not is_bytes or digest(row[:9], row[10], row[11]) != row[12]:
             raise HistoryError(f"Increment {number} in {self.name} is damaged: its checksum differs.", RERUN)
         return row
 
@@ -276,17 +302,6 @@ def _nothing_stored(path: Path) -> HistoryError:
     return HistoryError(
         f"The journal {path} is empty: the run ended before its first state was stored.", RERUN
     )
-
-
-def _sealed(meta: dict[str, str]) -> dict[str, str]:
-    """Facts with a checksum of the configuration, where it is one of them."""
-    if "config" not in meta:
-        return meta
-    return {**meta, "seal": hashlib.blake2b(meta["config"].encode(), digest_size=16).hexdigest()}
-
-
-def _digest(numbers: tuple[Any, ...], u: bytes, couplings: bytes) -> bytes:
-    return hashlib.blake2b(repr(numbers).encode() + u + couplings, digest_size=16).digest()
 
 
 def _displacement(blob: bytes) -> FloatArray:

@@ -1,12 +1,15 @@
-"""The onset of folding as a row of the journal."""
+"""What a run knows of stability, as rows of the journal."""
 
 from __future__ import annotations
 
+import sqlite3
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
 
-from gyrify.solve.stability import Onset
+from gyrify.solve.stability import Onset, StabilityChange
 from gyrify.solve.types import FloatArray
 
 SCHEMA: Final = """
@@ -23,6 +26,21 @@ CREATE TABLE onset (
     vector BLOB NOT NULL
 );
 """
+# A table that journals of earlier versions do not have.
+CHANGES: Final = """
+CREATE TABLE stability_changes (
+    number INTEGER PRIMARY KEY,
+    growth_time REAL NOT NULL,
+    bracket_low REAL NOT NULL,
+    bracket_high REAL NOT NULL,
+    n_before INTEGER NOT NULL,
+    n_after INTEGER NOT NULL,
+    kind TEXT NOT NULL,
+    mode_number INTEGER NOT NULL,
+    wavelength REAL NOT NULL
+);
+"""
+INSERT_CHANGE: Final = "INSERT INTO stability_changes VALUES (NULL, ?, ?, ?, ?, ?, ?, ?, ?)"
 INSERT: Final = "INSERT OR REPLACE INTO onset VALUES (0, ?, ?, ?, ?, ?, ?, ?, ?)"
 
 
@@ -39,6 +57,49 @@ def from_row(row: tuple[Any, ...]) -> Onset:
     return Onset(
         time, (low, high), eigenvalue, mode_number, wavelength, _points(displacement), _points(vector)
     )
+
+
+def add_changes(connection: sqlite3.Connection, changes: Sequence[StabilityChange]) -> None:
+    """Insert changes of stability; call it inside a transaction."""
+    if not changes:
+        return
+    if not has_changes(connection):
+        connection.execute(CHANGES.strip().rstrip(";"))
+    for change in changes:
+        row = (
+            change.growth_time,
+            *change.bracket,
+            change.n_before,
+            change.n_after,
+            change.kind,
+            change.mode_number,
+            change.wavelength,
+        )
+        connection.execute(INSERT_CHANGE, row)
+
+
+def has_changes(connection: sqlite3.Connection) -> bool:
+    """Whether the journal has the table of changes."""
+    query = "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = 'stability_changes'"
+    return bool(connection.execute(query).fetchone()[0])
+
+
+def read_changes(connection: sqlite3.Connection) -> tuple[StabilityChange, ...]:
+    """Every change of stability on record, in order."""
+    if not has_changes(connection):
+        return ()
+    rows = connection.execute("SELECT * FROM stability_changes ORDER BY number").fetchall()
+    return tuple(StabilityChange(time, (low, high), *rest) for _, time, low, high, *rest in rows)
+
+
+def read_onset(connection: sqlite3.Connection) -> Onset | None:
+    """The onset on record; what its mode moves stands with the change of stability that it is."""
+    row = connection.execute("SELECT * FROM onset").fetchone()
+    if row is None:
+        return None
+    onset = from_row(row)
+    kinds = (change.kind for change in read_changes(connection) if change.growth_time == onset.growth_time)
+    return replace(onset, kind=next(kinds, onset.kind))
 
 
 def _points(blob: bytes) -> FloatArray:

@@ -27,6 +27,8 @@ class Crossing:
         Deformed contour over the mode number [mm].
     growth_time : float
         Growth time [time].
+    kind : str or None
+        What the mode moves (definition `stability`); see `gyrify.onset.modes.Wave`.
     """
 
     value: float
@@ -35,6 +37,7 @@ class Crossing:
     mode_number: int | None
     wavelength_mm: float | None
     growth_time: float
+    kind: str | None = None
 
 
 @dataclass(frozen=True)

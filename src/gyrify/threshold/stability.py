@@ -7,22 +7,16 @@ from contextlib import suppress
 from itertools import pairwise
 
 import numpy as np
-from scipy.optimize import brentq
 
 from gyrify.config import Config
 from gyrify.errors import SolveError
-from gyrify.mesh.waves import dominant_wave
 from gyrify.model import Slice
-from gyrify.solve.stability import Eigenpair
+from gyrify.onset.crossing import LowestEigenvalue
+from gyrify.onset.modes import wave_of
+from gyrify.onset.smooth import IDEAL, SmoothBranch, SmoothState, grown
 from gyrify.threshold.parameters import configured
 from gyrify.threshold.result import Becomes, Crossing, Scanned
-from gyrify.threshold.smooth import SmoothBranch, SmoothState, grown
 
-# Stability is defined on the smooth branch: without what would disturb or delay the loss of it.
-IDEAL = {"mesh.node_jitter": 0.0, "dissipation.kind": "none", "stability.follow_branch": False}
-
-# An eigenvalue counts as zero below this fraction of those at the neighbouring points of the scan.
-_ZERO = 1e-4
 # The scan ends after so many values in a row without a smooth state.
 _GIVE_UP = 3
 _BISECTIONS = 8
@@ -46,9 +40,9 @@ class StabilityScan:
     def __init__(self, config: Config, parameter: str, watch: Callable[[], None] = lambda: None) -> None:
         self._config, self._parameter, self._watch = config.with_overrides(IDEAL), parameter, watch
         self._first: Slice | None = None
-        self._pairs: dict[float, Eigenpair] = {}
         self.notes: list[str] = []
         self._branch: SmoothBranch
+        self._lowest: LowestEigenvalue
 
     @property
     def evaluations(self) -> int:
@@ -138,39 +132,21 @@ class StabilityScan:
 
     def crossing(self, below: Scanned, above: Scanned, tolerance: float) -> Crossing:
         """Where the lowest eigenvalue vanishes between two points of the scan."""
-        ends = [self.eigenvalue(below.value), self.eigenvalue(above.value)]
-        small = _ZERO * max(map(abs, ends))
-
-        def clipped(value: float) -> float:
-            """Zero once close enough: at the singular state itself Newton's method has no answer."""
-            eigenvalue = self.eigenvalue(value)
-            return eigenvalue if abs(eigenvalue) > small else 0.0
-
-        refined = True
-        try:
-            brentq(clipped, below.value, above.value, xtol=tolerance * above.value)
-        except SolveError:
-            refined = False
-        inside = {v: self._pairs[v] for v in sorted(self._pairs) if below.value <= v <= above.value}
         was_unstable = bool(below.n_negative)
-        before = max(v for v, pair in inside.items() if (pair.eigenvalue < 0.0) == was_unstable)
-        after = min(v for v, pair in inside.items() if (pair.eigenvalue < 0.0) != was_unstable)
-        start, end = inside[before].eigenvalue, inside[after].eigenvalue
-        root = before + (after - before) * (start / (start - end) if refined else 0.5)
-        if not refined:
-            self.notes.append(f"The crossing between {before:.6g} and {after:.6g} is not known more closely.")
-        nearest = min(inside, key=lambda v: abs(inside[v].eigenvalue))
-        state = self._branch.at(nearest)
-        mode_number, wavelength = dominant_wave(state.problem.mesh, state.u, inside[nearest].vector)
-        time = root if self._parameter == "growth.time" else self._config.growth.duration
+        root = self._lowest.root(below.value, above.value, tolerance * above.value, was_unstable)
+        if not root.is_refined:
+            low, high = root.bracket
+            self.notes.append(f"The crossing between {low:.6g} and {high:.6g} is not known more closely.")
+        wave = wave_of(root.state.problem.mesh, root.state.u, root.pair.vector)
+        time = root.value if self._parameter == "growth.time" else self._config.growth.duration
         becomes: Becomes = "stable" if was_unstable else "unstable"
-        return Crossing(root, becomes, (before, after), mode_number, wavelength, time)
+        return Crossing(
+            root.value, becomes, root.bracket, wave.mode_number, wave.wavelength or None, time, wave.kind
+        )
 
     def eigenvalue(self, value: float) -> float:
         """Lowest eigenvalue at a value of the parameter [Pa/mm^2]."""
-        if value not in self._pairs:
-            self._pairs[value] = self._branch.at(value).tangent(self._system).lowest()
-        return self._pairs[value].eigenvalue
+        return self._lowest.at(value)
 
     def _problem_at(self, value: float) -> tuple[Slice, float]:
         """Tissue and growth fraction; what depends on the mesh alone is shared."""
@@ -199,4 +175,5 @@ class StabilityScan:
                 continue
             start = SmoothState(value, problem, fraction, u)
             self._branch = SmoothBranch(self._problem_at, start, self._system, self._watch)
+            self._lowest = LowestEigenvalue(self._branch, self._system)
             return

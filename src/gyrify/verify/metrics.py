@@ -18,7 +18,7 @@ from gyrify.versions import versions
 # Largest relative difference between a stored and a recomputed metric.
 METRIC_BOUND: Final = 1e-9
 # Keys of a summary that older versions did not write.
-LATER_KEYS: Final = frozenset({"warnings"})
+LATER_KEYS: Final = frozenset({"warnings", "stability_changes", "visible_growth_time", "relaxed"})
 
 
 def check_metrics(

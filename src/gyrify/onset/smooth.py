@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
@@ -17,12 +18,17 @@ from gyrify.solve.stability import Tangent
 from gyrify.solve.system import System
 from gyrify.solve.types import FloatArray
 
+# Stability is defined on the smooth branch: without what would disturb or delay the loss of it.
+IDEAL: Final = {"mesh.node_jitter": 0.0, "dissipation.kind": "none", "stability.follow_branch": False}
+
 # Growth is followed in this many steps at first. Where Newton's method needs more iterations, or corrects the
 # prediction by more than this share of the step, the state may be on another branch: the step is halved.
 GROWTH_STEPS = 8
 _ITERATIONS = 10
 _CORRECTION = 0.5
 _HALVINGS = 7
+# The prediction is the polynomial through so many known states at most.
+_POINTS = 4
 # Prominence of a gyrus over the cortical thickness.
 _GYRUS = 0.2
 
@@ -147,18 +153,17 @@ class SmoothBranch:
         return SmoothState(value, problem, fraction, solution.u)
 
     def _predict(self, value: float, near: SmoothState) -> FloatArray:
-        """Displacement on the line through two known states, on either side of the value where there are."""
-        low = max((v for v in self.known if v < value), default=None)
-        high = min((v for v in self.known if v > value), default=None)
-        far = low if near.value == high else high
-        if far is None:
-            distance = abs(value - near.value)
-            apart = [v for v in self.known if 2.0 * abs(v - near.value) >= distance and v != near.value]
-            far = min(apart, key=lambda v: abs(v - near.value), default=None)
-        if far is None:
-            return near.u
-        share = (value - near.value) / (near.value - far)
-        return near.u + share * (near.u - self.known[far].u)
+        """Displacement on the polynomial through the nearest known states that are not too close together."""
+        distance = abs(value - near.value)
+        taken = [near.value]
+        for other in sorted(self.known, key=lambda v: abs(v - value)):
+            if len(taken) < _POINTS and min(abs(other - v) for v in taken) >= 0.5 * distance:
+                taken.append(other)
+        u = np.zeros_like(near.u)
+        for v in taken:
+            weight = np.prod([(value - other) / (v - other) for other in taken if other != v])
+            u += float(weight) * self.known[v].u
+        return u
 
 
 def grown(

@@ -1,0 +1,53 @@
+"""Where folds are seen in a run: drag delays that beyond the loss of stability."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+
+from gyrify.metrics import gyrification_index, measure
+
+if TYPE_CHECKING:
+    from gyrify.store.history import History
+
+# Gyrification index (closing) above which a slice counts as visibly folded.
+VISIBLE: Final = 1.005
+
+
+def visible_time(history: History, level: float = VISIBLE) -> float | None:
+    """Growth time at which the index by the closing first passes a level, interpolated between increments.
+
+    Parameters
+    ----------
+    history : History
+        The run, complete or not.
+    level : float
+        Gyrification index [-], > 1.
+
+    Returns
+    -------
+    float or None
+        None where it never does.
+    """
+    times, last = history.growth_times, 1.0
+    for index in range(len(history)):
+        now = _index(history, index, level)
+        if now > level:
+            start, end = (float(times[max(index - 1, 0)]), float(times[index]))
+            if last > level:
+                return end
+            last = _index(history, index - 1, 1.0)
+            return start + (level - last) / (now - last) * (end - start)
+        last = now
+    return None
+
+
+def _index(history: History, index: int, level: float) -> float:
+    """Index by the closing; 1 where that by the hull, which is larger and cheap, is below the level."""
+    metrics, contour = history.config.metrics, history.contour(index)
+    if history.mesh.period is None:
+        if gyrification_index(contour, "hull") <= level:
+            return 1.0
+        return gyrification_index(contour, closing_radius=metrics.closing_radius)
+    samples = (metrics.closing_radius, metrics.gyrus_prominence, metrics.samples)
+    return measure(contour, history.interface(index), *samples, history.mesh.period).gi_closing
