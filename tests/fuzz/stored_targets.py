@@ -15,7 +15,7 @@ from stored import journal_bytes, tiny_config
 from target import Target
 
 from gyrify.store import History, Journal
-from gyrify.store.journal import _digest, _sealed
+from gyrify.store.integrity import digest, sealed
 from gyrify.study import final_state, read_results
 from gyrify.study.archive import FinalState, Record, sha256, write_record
 
@@ -82,10 +82,10 @@ def _forge(file: Path, script: str) -> None:
 
 def _seal(connection: sqlite3.Connection) -> None:
     for row in connection.execute("SELECT * FROM increments").fetchmany(20):
-        sealed = _digest(row[:9], row[10], row[11])
-        connection.execute("UPDATE increments SET digest = ? WHERE number = ?", (sealed, row[0]))
+        mended = digest(row[:9], row[10], row[11])
+        connection.execute("UPDATE increments SET digest = ? WHERE number = ?", (mended, row[0]))
     (config,) = connection.execute("SELECT value FROM meta WHERE key = 'config'").fetchone()
-    connection.executemany("INSERT OR REPLACE INTO meta VALUES (?, ?)", _sealed({"config": config}).items())
+    connection.executemany("INSERT OR REPLACE INTO meta VALUES (?, ?)", sealed({"config": config}).items())
 
 
 def _read_history(folder: Path, *, deep: bool) -> None:

@@ -16,7 +16,7 @@ from gyrify.errors import HistoryError
 from gyrify.reevaluation import reevaluated
 from gyrify.simulation import simulate
 from gyrify.store import History
-from gyrify.store.journal import _digest
+from gyrify.store.integrity import digest
 from gyrify.summary import summarise, write_metrics, write_summary
 from gyrify.verify import Verification, verify
 from gyrify.verify.recheck import ENERGY_BOUND
@@ -52,10 +52,10 @@ def edit_row(folder: Path, number: int, change: Callable[[bytearray], None], *, 
         row = list(database.execute("SELECT * FROM increments WHERE number = ?", (number,)).fetchone())
         blob = bytearray(row[10])
         change(blob)
-        digest = _digest(tuple(row[:9]), bytes(blob), row[11]) if fix_digest else row[12]
+        checksum = digest(tuple(row[:9]), bytes(blob), row[11]) if fix_digest else row[12]
         database.execute(
             "UPDATE increments SET displacement = ?, digest = ? WHERE number = ?",
-            (bytes(blob), digest, number),
+            (bytes(blob), checksum, number),
         )
     database.close()
 

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Final
+
 from scipy.optimize import brentq
 
 from gyrify.errors import SolveError
 from gyrify.onset.smooth import SmoothBranch, SmoothState
 from gyrify.solve.stability import Eigenpair
 from gyrify.solve.system import System
+
+# An eigenvalue counts as zero below this fraction of the smaller one at the ends of the bracket: that at the
+# stable end may be of a soft mode that is no part of the crossing.
+_ZERO: Final = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,15 +53,12 @@ class LowestEigenvalue:
         The states.
     system : System
         Linear system of the free degrees of freedom.
-    zero : float
-        An eigenvalue counts as zero below this fraction of those at the ends of the bracket [-].
     pairs : dict
         Eigenpairs by the value of the parameter.
     """
 
     branch: SmoothBranch
     system: System
-    zero: float = 1e-4
     pairs: dict[float, Eigenpair] = field(default_factory=dict)
 
     def at(self, value: float) -> float:
@@ -85,7 +88,7 @@ class LowestEigenvalue:
         SolveError
             If the eigenvalue is not found at an end.
         """
-        small = self.zero * max(abs(self.at(low)), abs(self.at(high)))
+        small = _ZERO * min(abs(self.at(low)), abs(self.at(high)))
 
         def clipped(value: float) -> float:
             """Zero once close enough: at the singular state itself Newton's method has no answer."""

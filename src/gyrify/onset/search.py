@@ -20,11 +20,10 @@ from gyrify.onset.smooth import IDEAL, SmoothBranch, SmoothState
 from gyrify.solve.stability import Onset, StabilityChange
 from gyrify.solve.types import FloatArray
 
-# Growth is looked at so many times, evenly spaced, and half as often once stability is lost.
+# Growth is looked at so many times, evenly spaced.
 MARKS: Final = 16
-# Tolerance of the onset, as a fraction of the duration of growth, and of the eigenvalue that vanishes there.
+# Tolerance of the onset, as a fraction of the duration of growth.
 _TOLERANCE: Final = 1e-5
-_ZERO: Final = 1e-3
 # Halvings of the step between two looks: past the loss of stability the branch is given up at once.
 _HALVINGS, _HALVINGS_UNSTABLE = 6, 0
 
@@ -48,7 +47,7 @@ class OnsetSearch:
     changes : list of StabilityChange
         Every change of stability passed, in order.
     mark : int
-        Looks done or left out: growth has been followed to the fraction ``mark / MARKS``.
+        Looks done: growth has been followed to the fraction ``mark / MARKS``.
     lost_at : float or None
         Growth time at which the smooth branch ends, or folds by degrees; None while it goes on.
     """
@@ -64,15 +63,14 @@ class OnsetSearch:
         system = self._problem.system(np.empty((0, 2), dtype=np.int64))
         start = SmoothState(0.0, self._problem, 0.0, np.zeros(self._problem.state_shape))
         self._branch = SmoothBranch(lambda fraction: (self._problem, fraction), start, system, watch)
-        self._lowest = LowestEigenvalue(self._branch, system, _ZERO)
+        self._lowest = LowestEigenvalue(self._branch, system)
         self._last, self._n_negative = start, 0
 
     def follow(self, fraction: float) -> None:
         """Follow the branch up to the last look at or before a fraction of growth."""
         while self.lost_at is None and (self.mark + 1) / MARKS <= fraction:
             self.mark += 1
-            if self._n_negative == 0 or self.mark % 2 == 0:
-                self._look(self.mark / MARKS)
+            self._look(self.mark / MARKS)
 
     def onset_by(self, fraction: float) -> Onset | None:
         """The onset, looked for up to a fraction of growth that need not be one of the looks."""

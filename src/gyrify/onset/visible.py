@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-
 from gyrify.metrics import gyrification_index, measure
 
 if TYPE_CHECKING:

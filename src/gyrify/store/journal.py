@@ -35,28 +35,10 @@ from gyrify.store.integrity import (
     require_schema,
     sealed,
 )
+from gyrify.store.tables import TABLES, TABLES_OF_ANY_VERSION
 
 FORMAT: Final = 1
 _APPLICATION_ID: Final = 0x67797269  # "gyri"
-_SCHEMA: Final = """
-CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE increments (
-    number INTEGER PRIMARY KEY,
-    position INTEGER NOT NULL,
-    span INTEGER NOT NULL,
-    next_span INTEGER NOT NULL,
-    residual REAL NOT NULL,
-    newton_iterations INTEGER NOT NULL,
-    factorizations INTEGER NOT NULL,
-    analyses INTEGER NOT NULL,
-    rejected INTEGER NOT NULL,
-    wall_s REAL NOT NULL,
-    displacement BLOB NOT NULL,
-    couplings BLOB NOT NULL,
-    digest BLOB NOT NULL
-);
-"""
-_TABLES: Final = _SCHEMA + onset_rows.SCHEMA + onset_rows.CHANGES
 
 
 class Journal:
@@ -90,7 +72,7 @@ class Journal:
                 connection.execute("PRAGMA journal_mode = WAL")
                 connection.execute("PRAGMA synchronous = NORMAL")
                 with transaction(connection):
-                    for statement in filter(str.strip, _TABLES.split(";")):
+                    for statement in filter(str.strip, TABLES.split(";")):
                         connection.execute(statement)
                     connection.executemany("INSERT INTO meta VALUES (?, ?)", sealed(meta).items())
                     connection.execute(f"PRAGMA application_id = {_APPLICATION_ID}")
@@ -136,7 +118,7 @@ class Journal:
                 "Use the version of gyrify that wrote it (see `versions` in summary.json), or run again.",
             )
         with translated(str(path)):
-            require_schema(connection, (_TABLES, _SCHEMA + onset_rows.SCHEMA), str(path))
+            require_schema(connection, TABLES_OF_ANY_VERSION, str(path))
         journal = Journal(connection, path)
         journal.check()
         return journal

@@ -11,35 +11,8 @@ import numpy as np
 
 from gyrify.solve.stability import Onset, StabilityChange
 from gyrify.solve.types import FloatArray
+from gyrify.store.tables import CHANGES
 
-SCHEMA: Final = """
-CREATE TABLE stability (number INTEGER PRIMARY KEY, n_negative INTEGER NOT NULL);
-CREATE TABLE onset (
-    number INTEGER PRIMARY KEY CHECK (number = 0),
-    growth_time REAL NOT NULL,
-    bracket_low REAL NOT NULL,
-    bracket_high REAL NOT NULL,
-    eigenvalue REAL NOT NULL,
-    mode_number INTEGER NOT NULL,
-    wavelength REAL NOT NULL,
-    displacement BLOB NOT NULL,
-    vector BLOB NOT NULL
-);
-"""
-# A table that journals of earlier versions do not have.
-CHANGES: Final = """
-CREATE TABLE stability_changes (
-    number INTEGER PRIMARY KEY,
-    growth_time REAL NOT NULL,
-    bracket_low REAL NOT NULL,
-    bracket_high REAL NOT NULL,
-    n_before INTEGER NOT NULL,
-    n_after INTEGER NOT NULL,
-    kind TEXT NOT NULL,
-    mode_number INTEGER NOT NULL,
-    wavelength REAL NOT NULL
-);
-"""
 INSERT_CHANGE: Final = "INSERT INTO stability_changes VALUES (NULL, ?, ?, ?, ?, ?, ?, ?, ?)"
 INSERT: Final = "INSERT OR REPLACE INTO onset VALUES (0, ?, ?, ?, ?, ?, ?, ?, ?)"
 

@@ -1,0 +1,90 @@
+"""Onset of folding in runs against the exact annulus: every hole, every drag number, both laws of growth.
+
+A state that drag holds back is no equilibrium of the tissue. Judged there, a slice with a hole of a fifth and
+drag number 1.3 lost stability at growth time 7.5, by a rotation about its hole.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gyrify.config import Config
+from gyrify.model import Slice
+from gyrify.onset.search import OnsetSearch
+from gyrify.simulation import simulate
+from gyrify.solve.stability import Onset
+from gyrify.theory import Annulus, critical_growth_time
+
+RADIUS = 36.0
+TIMES = np.linspace(0.0, 500.0, 11).tolist()
+
+
+def circle(hole: float, **values: object) -> Config:
+    """A circle of the reference tissue."""
+    given = {key.replace("__", "."): value for key, value in values.items()}
+    return Config.preset("reference-slice").with_overrides(
+        {
+            "geometry.shape": "circle",
+            "geometry.area": np.pi * RADIUS**2,
+            "geometry.hole_fraction": hole,
+            "mesh.n_layers": 24,
+            **given,
+        }
+    )
+
+
+def exact(hole: float, law: str = "isotropic") -> tuple[float, int | None]:
+    """Growth time and mode number of the annulus."""
+    found = critical_growth_time(Annulus(inner_radius=hole * RADIUS, outer_radius=RADIUS, law=law), TIMES)  # type: ignore[arg-type]
+    return found[0].value, found[0].mode_number
+
+
+def onset(config: Config) -> Onset:
+    """Onset on the mesh of a configuration."""
+    found = OnsetSearch(Slice(config)).onset_by(1.0)
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize(("drag", "hole"), [(1.3, 0.2), (5.0, 0.4), (13.0, 0.5), (1.3, 0.5), (30.0, 0.1)])
+def test_a_run_stores_the_onset_of_the_annulus(drag: float, hole: float) -> None:
+    """At about the resolution of the paper, whose own error is 5 to 9 %; the mode is a fold, no rotation."""
+    config = circle(hole, dissipation__number=drag, growth__duration=320.0, solver__increments=16)
+    history = simulate(config)
+    time, number = exact(hole)
+    assert history.onset is not None
+    assert history.onset.kind == "fold"
+    assert history.onset.growth_time == pytest.approx(time, rel=0.1)
+    assert history.onset.growth_time > time  # linear triangles are too stiff
+    assert history.onset.mode_number == pytest.approx(number, abs=3)
+
+
+@pytest.mark.parametrize(("hole", "law"), [(0.1, "isotropic"), (0.9, "tangential")])
+def test_quadratic_cells_give_the_onset_of_the_annulus(hole: float, law: str) -> None:
+    time, number = exact(hole, law)
+    values = {"mesh__n_around": 9 * number, "growth__law": law, "growth__duration": 1.1 * time}
+    found = onset(circle(hole, mesh__element="quadratic", **values))
+    assert found.growth_time == pytest.approx(time, rel=2e-3)
+    assert found.mode_number == pytest.approx(number, abs=1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("hole", [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8])
+@pytest.mark.parametrize("law", ["isotropic", "tangential"])
+def test_quadratic_cells_for_every_hole(hole: float, law: str) -> None:
+    test_quadratic_cells_give_the_onset_of_the_annulus(hole, law)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("hole", [0.1, 0.3, 0.5, 0.7, 0.9])
+@pytest.mark.parametrize("law", ["isotropic", "tangential"])
+def test_linear_cells_after_the_error_of_the_mesh(hole: float, law: str) -> None:
+    """The error falls with the square of the cell size; what is left of it by extrapolation is below 2 %."""
+    time, _ = exact(hole, law)
+    coarse, fine = (
+        onset(circle(hole, mesh__refine=level, growth__law=law, growth__duration=1.4 * time)).growth_time
+        for level in (0, 1)
+    )
+    assert abs(fine - time) < 0.4 * abs(coarse - time)
+    assert fine - (coarse - fine) / 3.0 == pytest.approx(time, rel=0.02)
