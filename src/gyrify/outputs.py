@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from gyrify.errors import HistoryError
 from gyrify.report.figures import folded_figure, save_figure
-from gyrify.report.mode import mode_figure
+from gyrify.report.mode import mode_figure, wave_words
 from gyrify.solve.stability import Onset
 from gyrify.store.faults import storage_faults
 from gyrify.store.history import History
@@ -122,6 +122,6 @@ def onset_picture(history: History, onset: Onset) -> Figure:
         mesh.interface,
         mesh.clamped,
         title=f"Loss of stability at growth time {onset.growth_time:.5g}",
-        subtitle=f"mode {onset.mode_number}, wavelength {onset.wavelength:.3g} mm",
+        subtitle=wave_words(onset),
         period=mesh.period,
     )

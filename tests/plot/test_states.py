@@ -141,7 +141,7 @@ def test_the_mode_is_drawn_from_the_onset(history) -> None:
 
 
 def test_there_is_no_mode_without_an_onset(runs: dict[str, Path]) -> None:
-    with pytest.raises(ConfigError, match=r"no onset was found.*gyrify threshold"):
+    with pytest.raises(ConfigError, match=r"no onset was found up to growth time 500"):
         gyrify.plot(runs["smooth"], "mode")
     with pytest.raises(ConfigError, match=r"not looked for \(stability.detect = false\)"):
         gyrify.plot(runs["unseen"], "mode")

@@ -9,8 +9,8 @@ from typing import Final
 import numpy as np
 
 from gyrify.errors import SolveError
-from gyrify.metrics import measure
 from gyrify.model import Slice
+from gyrify.onset.visible import VISIBLE, visible_index
 from gyrify.solve.equilibrium import find_equilibrium
 from gyrify.solve.newton import Criterion
 from gyrify.solve.result import Result
@@ -29,8 +29,6 @@ _CORRECTION = 0.5
 _HALVINGS = 7
 # The prediction is the polynomial through so many known states at most.
 _POINTS = 4
-# Prominence of a gyrus over the cortical thickness.
-_GYRUS = 0.2
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,21 +61,9 @@ class SmoothState:
 
     @property
     def is_folded(self) -> bool:
-        """Whether the contour has gyri: the branch has then veered away from the smooth one.
-
-        Undulations below a fifth of the cortical thickness are the shape of a smooth slice.
-        """
-        mesh, metrics = self.problem.mesh, self.problem.config.metrics
-        x = mesh.points + self.u[: mesh.n_points]
-        measures = measure(
-            x[mesh.contour],
-            x[mesh.interface],
-            metrics.closing_radius,
-            _GYRUS * self.problem.config.geometry.cortical_thickness,
-            metrics.samples,
-            mesh.period,
-        )
-        return measures.n_gyri > 0
+        """Whether folds are seen: the branch has then veered away from the smooth one."""
+        points = self.problem.mesh.points + self.u[: self.problem.mesh.n_points]
+        return visible_index(self.problem.mesh, points, self.problem.config.metrics) > VISIBLE
 
     def tangent(self, system: System) -> Tangent:
         """Exact stiffness of the state."""
@@ -121,8 +107,8 @@ class SmoothBranch:
             return self.known[value]
         if not self.known:
             raise SolveError(
-                f"No smooth state is known to reach {value:.6g} from: every one that was found has gyri.",
-                "Raise mesh.n_around: the pattern of a coarse mesh may count as gyri.",
+                f"No smooth state is known to reach {value:.6g} from: every one that was found is folded.",
+                "Raise mesh.n_around: on a coarse mesh the smooth state may fold by degrees.",
             )
         near = min(self.known.values(), key=lambda state: abs(state.value - value))
         state = self._try(value, near)

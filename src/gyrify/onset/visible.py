@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from gyrify.mesh import Mesh
+from gyrify.mesh.mesh import FloatArray
 from gyrify.metrics import gyrification_index, measure
 
 if TYPE_CHECKING:
+    from gyrify.config.run_sections import Metrics
     from gyrify.store.history import History
 
 # Gyrification index (closing) above which a slice counts as visibly folded.
@@ -30,23 +33,39 @@ def visible_time(history: History, level: float = VISIBLE) -> float | None:
     """
     times, last = history.growth_times, 1.0
     for index in range(len(history)):
-        now = _index(history, index, level)
+        now = visible_index(history.mesh, history.points(index), history.config.metrics, level)
         if now > level:
             start, end = (float(times[max(index - 1, 0)]), float(times[index]))
             if last > level:
                 return end
-            last = _index(history, index - 1, 1.0)
+            last = visible_index(history.mesh, history.points(index - 1), history.config.metrics, 1.0)
             return start + (level - last) / (now - last) * (end - start)
         last = now
     return None
 
 
-def _index(history: History, index: int, level: float) -> float:
-    """Index by the closing; 1 where that by the hull, which is larger and cheap, is below the level."""
-    metrics, contour = history.config.metrics, history.contour(index)
-    if history.mesh.period is None:
+def visible_index(mesh: Mesh, points: FloatArray, metrics: Metrics, level: float = VISIBLE) -> float:
+    """Index by the closing; 1 where that by the hull, which is never smaller, is at most a level.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The reference mesh.
+    points : (n_points, 2) float array
+        Deformed coordinates [mm].
+    metrics : Metrics
+        Section of the configuration.
+    level : float
+        Gyrification index of interest [-].
+
+    Returns
+    -------
+    float
+    """
+    contour = points[mesh.contour]
+    if mesh.period is None:
         if gyrification_index(contour, "hull") <= level:
             return 1.0
         return gyrification_index(contour, closing_radius=metrics.closing_radius)
     samples = (metrics.closing_radius, metrics.gyrus_prominence, metrics.samples)
-    return measure(contour, history.interface(index), *samples, history.mesh.period).gi_closing
+    return measure(contour, points[mesh.interface], *samples, mesh.period).gi_closing

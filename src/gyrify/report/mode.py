@@ -23,12 +23,21 @@ from gyrify.report.page import (
     scale_bar,
     write_header,
 )
+from gyrify.solve.stability import Onset
 
 # Largest displacement of the drawn mode, over the width of the slice.
 AMPLITUDE: Final = 0.03
 WIDTH_MM: Final = 90.0
 _THIN: Final[dict[str, Any]] = {"color": COLOURS["line"], "linewidth": 0.4}
 _THICK: Final = {**_THIN, "linewidth": 0.9}
+
+
+def wave_words(onset: Onset) -> str:
+    """What the mode of an onset moves, in words."""
+    if onset.mode_number == 0:
+        return onset.kind
+    words = f"mode {onset.mode_number}, wavelength {onset.wavelength:.3g} mm"
+    return words if onset.kind == "fold" else f"{words}, {onset.kind}"
 
 
 def mode_figure(

@@ -24,7 +24,7 @@ RESULTS: Final = "results.parquet"
 TIMINGS: Final = "timings.csv"
 _IDENTITY: Final = ("key", "config_hash", "solver_version", "status", "reason", "advice")
 # Not quantities, given elsewhere in the row, or different from one machine to the next.
-_LEFT_OUT: Final = {*_IDENTITY, "versions", "seed", "result_hash", "solver_wall_s"}
+_LEFT_OUT: Final = {*_IDENTITY, "versions", "seed", "result_hash", "solver_wall_s", "stability_changes"}
 # What an incomplete run has too.
 _OF_ANY_END: Final = ("growth_time", "solver_")
 _INT, _TEXT, _BOOL, _FLOAT = "int64", "string", "bool", "float64"

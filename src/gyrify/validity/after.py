@@ -48,7 +48,7 @@ def _crossing(_: History, summary: dict[str, Any]) -> list[str]:
 
 def _stability(_: History, summary: dict[str, Any]) -> list[str]:
     note = summary["stability_note"]
-    is_told = "without a loss of stability" in note or "unstable equilibrium" in note
+    is_told = any(words in note for words in ("unstable equilibrium", "not known", "held by dissipation"))
     return [note] if is_told else []
 
 

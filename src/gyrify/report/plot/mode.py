@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from gyrify.errors import ConfigError
-from gyrify.report.mode import ModeLines, mode_figure, mode_handles
+from gyrify.report.mode import ModeLines, mode_figure, mode_handles, wave_words
 from gyrify.report.page import legend
 from gyrify.report.plot.shown import Shown
 from gyrify.report.plot.slices import BAR_MM, Label, board
@@ -65,17 +65,11 @@ def onset_of(state: Shown) -> Onset:
             f"{state.name}: the loss of stability was not looked for (stability.detect = false).",
             "Run again with --set stability.detect=true.",
         )
-    folded = " Node jitter can unfold the bifurcation, so that a slice folds without one." * (
-        state.measures.n_gyri > 0
-    )
     raise ConfigError(
-        f"{state.name}: no onset was found, so that there is no mode to show.{folded}",
-        "`gyrify threshold` finds the onset of the smooth slice; choose another picture with --what.",
+        f"{state.name}: no onset was found up to growth time {float(history.growth_times[-1]):.6g}, so that "
+        "there is no mode to show.",
+        "Grow for longer, or choose another picture with --what.",
     )
-
-
-def _wave(onset: Onset) -> str:
-    return f"mode {onset.mode_number}, wavelength {onset.wavelength:.3g} mm"
 
 
 def _arrays(state: Shown, onset: Onset) -> Arrays:
@@ -93,6 +87,6 @@ def _one(state: Shown, onset: Onset) -> Figure:
     return mode_figure(
         *_arrays(state, onset),
         title=f"{title} ({state.note})" if state.note else title,
-        subtitle=_wave(onset),
+        subtitle=wave_words(onset),
         period=state.history.mesh.period,
     )

@@ -73,7 +73,8 @@ function createModeSwitch(viewer, onset, onChange) {
       viewer.set({ mode: Number(amplitude.value) });
     },
   });
-  const about = `Critical mode: ${onset.mode_number} waves of ${brief(onset.wavelength_mm, 3)} mm at growth time ` +
+  const waves = onset.mode_number ? `${onset.mode_number} waves of ${brief(onset.wavelength_mm, 3)} mm` : onset.kind;
+  const about = `Critical mode: ${waves} at growth time ` +
     `${brief(onset.growth_time)}. Orange: the state itself. The amplitude is arbitrary.`;
   const bar = element("div", { class: "mode-bar", hidden: true }, element("span", {}, about),
     element("label", {}, "amplitude ", amplitude));
