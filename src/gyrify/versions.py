@@ -25,6 +25,7 @@ NUMERICS: Final = (
     "run",
     "metrics",
     "summary",
+    "validity",
 )
 
 

@@ -56,6 +56,7 @@ def test_every_quantity_of_a_summary_has_its_column(folded: History) -> None:
 
     summary = summarise(folded)
     known = {"status", "reason", "advice", "config_hash", "result_hash", "seed", "solver_wall_s"}
+    known |= {"stability_changes", "warnings"}
     found = {name for name in flat(summary) if not name.startswith("versions_")} - known
     assert found == set(QUANTITIES) - {"phenotype", "phenotype_rule"}
 
