@@ -14,7 +14,8 @@ from gyrify.config import Config
 from gyrify.errors import ConfigError, SolveError
 from gyrify.report.plot.dispersion import annulus_of
 from gyrify.theory.annulus import BaseState
-from gyrify.theory.onset import Parameter, stability_margin, state_at
+from gyrify.theory.margin import stability_margin
+from gyrify.theory.onset import Parameter, state_at
 
 FloatArray = NDArray[np.float64]
 Span = tuple[float, float]

@@ -18,8 +18,9 @@ from gyrify.theory.half_space import (
     critical_wrinkle,
     neutral_curve,
 )
+from gyrify.theory.margin import scaled
 from gyrify.theory.modes import dispersion
-from gyrify.theory.onset import scaled, stability_map
+from gyrify.theory.onset import stability_map
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
