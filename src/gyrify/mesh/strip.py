@@ -73,9 +73,9 @@ def periodic_strip(length: float, depth: float, cortical_thickness: float, layer
 
 def _symmetric(points: FloatArray, length: float, image: IntArray) -> FloatArray:
     """Points of which each is at x = length less that of its image, exactly, and as high."""
-    unit = np.spacing(length)
+    own, unit = np.arange(image.size), np.spacing(length)
     # on this grid the difference to the length has no rounding
     x, y = np.round(points[:, 0] / unit) * unit, points[:, 1]
-    is_first = np.arange(image.size) < image
-    x = np.where(is_first | (image == np.arange(image.size)), x, length - x[image])
-    return np.stack([x, np.where(is_first, y, y[image])], axis=1)
+    x = np.where(own < image, x, length - x[image])
+    middle = np.where(points[:, 0] < 0.25 * length, 0.0, 0.5 * length)
+    return np.stack([np.where(own == image, middle, x), np.where(own < image, y, y[image])], axis=1)
