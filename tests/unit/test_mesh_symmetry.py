@@ -55,6 +55,12 @@ def test_mesh_is_its_own_mirror_image(change: dict, jitter: float) -> None:
         assert sets(image[mesh.cells[mesh.region == 1]]) == sets(mesh.cells[mesh.region == 1])
         for line in (mesh.contour, mesh.interface, mesh.clamped):
             assert np.array_equal(np.sort(image[line]), np.sort(line))
+        cell_of = {
+            cell: number for number, cell in enumerate(map(tuple, np.sort(mesh.cells, axis=1).tolist()))
+        }
+        twin = [cell_of[cell] for cell in map(tuple, np.sort(image[mesh.cells], axis=1).tolist())]
+        flip = np.where(np.arange(2) == mirror.axis, -1.0, 1.0)
+        assert mesh.across[twin] == pytest.approx(mesh.across * flip, abs=1e-12)
         quads = {tuple(np.unique(mesh.cells[mesh.patch == p, :3])) for p in np.unique(mesh.patch)}
         assert {tuple(sorted(image[list(quad)].tolist())) for quad in quads} == quads
 
