@@ -152,7 +152,8 @@ class Detector:
             self.onset = onset
             text += f"; stability is lost at growth time {onset.growth_time:.6g} in mode {onset.mode_number}"
         if self.problem.unknowns is not None:
-            return SolveError(f"{text}.", 'Choose another mesh.split than "symmetric", or a dissipation.kind.')
+            advice = 'Choose another mesh.split than "symmetric", or a dissipation.kind.'
+            return SolveError(f"{text}.", advice)
         return SolveError(
             f"{text}.",
             "Set stability.follow_branch = true to fold, mesh.node_jitter above 0 to drift into folds, "
