@@ -152,6 +152,8 @@ COMMAND_LINE = [
     Case("slivers", "layers far too thin for their columns", ("mesh.n_around = 216", "quality", "raise mesh.n_around"), args=(*CHECK, "--thickness", "0.05")),
     Case("axial-patches", "an element that has no free stretch along z", ("growth.out_of_plane", "mean_dilatation", "Try"), '[growth]\nout_of_plane = "generalised"\n[mesh]\nelement = "mean_dilatation"'),
     Case("cortex-refined-too-often", "more refinements of the cortex than white layers", ("mesh.refine_cortex = 4", "3 white"), "[mesh]\nn_layers = 9\nrefine_cortex = 4"),
+    Case("symmetric-columns", "columns that cannot be symmetric", ("mesh.split", "4 must divide", "n_around = 60 or 64"), "[mesh]\nn_around = 62\nsplit = \"symmetric\""),
+    Case("symmetric-branch", "a branch to follow that may break the symmetry", ("mesh.split", "follow_branch", "alternating"), "[mesh]\nsplit = \"symmetric\"\n[dissipation]\nkind = \"none\"\n[stability]\nfollow_branch = true"),
     Case("option-word", "a word for a number", ("geometry.cortical_thickness", '"thick"'), args=(*CHECK, "--thickness", "thick")),
     Case("set-key", "an unknown key on the command line", ("Did you mean growth.ratio?",), args=assign("growth.ratoi=2")),
     Case("set-form", "an assignment without a value", ("is not an assignment", "section.field=value"), args=assign("growth.ratio")),

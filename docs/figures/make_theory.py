@@ -42,11 +42,13 @@ def table(head: list[str], rows: list[list[str]]) -> str:
 
 
 def wrinkle(bilayer: Bilayer, strain: bool = False) -> str:
-    """Critical load or compression with the wavelength, as `1.309 (3.62)`; `s` marks the surface limit."""
+    """Critical load or compression with the wavelength, as `1.309 (3.62)`; `s` and `l` mark the limits."""
     onset = critical_wrinkle(bilayer)
     if not np.isfinite(onset.load):
         return "none"
     value = f"{onset.strain:.4f}" if strain else f"{onset.load:.4f}"
+    if onset.is_substrate:
+        return f"{value} (l)"
     return f"{value} (s)" if onset.is_surface else f"{value} ({onset.wavelength:.2f})"
 
 
@@ -89,11 +91,21 @@ def bilayer_tables() -> dict[str, str]:
     fourth = [
         [name, *(wrinkle(replace(case, stiffness_ratio=b)) for b in few)] for name, case in variants.items()
     ]
+    ratios_below_one = (0.05, 0.1, 0.2, 0.35, 0.5, 0.8)
+    films = (1 / 1.36, 1.0, 2.0, 5.0)
+    fast = []
+    for ratio in ratios_below_one:
+        cases = [Bilayer(b, 0.458, growth_ratio=ratio) for b in films]
+        limit = f"{critical_surface(cases[0], 'substrate').load:.4f}"
+        fast.append([f"{ratio:g}", limit, *map(wrinkle, cases)])
     surfaces = [f"bare surface, {draw._LOADING_NAMES[x].split(',')[0]}" for x in LOADINGS]
     return {
         "incompressible": table(head, first),
         "ours": table(head, second),
         "poisson": table(["ν", *surfaces, *(f"film, isotropic, β = {b}: g (L)" for b in (1, 3, 10))], third),
+        "fast": table(
+            ["growth ratio", "substrate's surface", *(f"β = {draw.ratio_name(b)}" for b in films)], fast
+        ),
         "variants": table(["film's growth", *(f"β = {draw.ratio_name(b)}" for b in few)], fourth),
     }
 

@@ -11,7 +11,9 @@ from gyrify.energy.contact import ContactEnergy, ContactSurface
 from gyrify.energy.kinematics import ElasticKinematics
 from gyrify.energy.term import EnergyTerm, FloatArray, IntArray
 from gyrify.energy.total import TotalEnergy
+from gyrify.energy.unknowns import Unknowns
 from gyrify.energy.viscous import DragEnergy, KelvinVoigtEnergy, green_lagrange
+from gyrify.mesh.symmetry import representatives
 from gyrify.meshing import build_mesh
 from gyrify.solve.linear import linear_solver
 from gyrify.solve.newton import Criterion
@@ -48,7 +50,16 @@ class Slice(Tissue):
     def varied(self, config: Config) -> Slice:
         """Slice of another configuration on the same mesh; what depends on the mesh alone is shared."""
         other = Slice(config, self.mesh)
-        shared = ("simplices", "pattern", "patches", "surface", "lumped_area", "free", "free_mass")
+        shared = (
+            "simplices",
+            "pattern",
+            "patches",
+            "surface",
+            "lumped_area",
+            "free",
+            "free_mass",
+            "unknowns",
+        )
         other.__dict__.update({name: getattr(self, name) for name in shared})
         return other
 
@@ -62,6 +73,19 @@ class Slice(Tissue):
         """(n_free,) lumped reference area of each free degree of freedom [mm^2]; all of it for F33."""
         area = np.where(self.lumped_area > 0.0, self.lumped_area, self.lumped_area.sum())
         return np.asarray(np.repeat(area, self.mesh.n_dim)[self.free])
+
+    @cached_property
+    def unknowns(self) -> Unknowns | None:
+        """What the free degrees of freedom follow in an increment: half or a quarter of a symmetric mesh."""
+        mirrors = self.mesh.mirrors
+        if not mirrors:
+            return None
+        n_rows, n_dim = self.state_shape
+        source, sign = representatives(mirrors, self.mesh.n_points, n_dim)
+        own = np.arange(source.size, n_rows * n_dim)  # the axial unknown
+        return Unknowns.of(
+            np.concatenate([source, own]), np.concatenate([sign, np.ones(own.size)]), self.free
+        )
 
     @property
     def stepping(self) -> Stepping:
@@ -79,7 +103,13 @@ class Slice(Tissue):
     @property
     def shift_mass(self) -> FloatArray | None:
         """See `gyrify.solve.problem.Problem`: the mass, unless a projection is asked for."""
-        return self.free_mass if self.config.solver.regularisation == "shift" else None
+        if self.config.solver.regularisation != "shift":
+            return None
+        if self.unknowns is None:
+            return self.free_mass
+        mass = np.zeros(self.unknowns.number.size)
+        mass[self.free] = self.free_mass
+        return self.unknowns.gather_mass(mass)
 
     @property
     def old_steps(self) -> int:
@@ -94,8 +124,13 @@ class Slice(Tissue):
     @property
     def is_path_kept(self) -> bool:
         """See `gyrify.solve.problem.Problem`: a bifurcation is to be seen, and nothing unfolds it."""
-        stability, is_perfect = self.config.stability, self.config.mesh.node_jitter == 0.0
-        return self.is_conservative and stability.detect and (stability.follow_branch or is_perfect)
+        stability = self.config.stability
+        return self.is_conservative and stability.detect and (stability.follow_branch or self.is_perfect)
+
+    @property
+    def is_perfect(self) -> bool:
+        """Whether no imperfection pushes to either side of a bifurcation that breaks the symmetry."""
+        return self.config.mesh.node_jitter == 0.0 or self.unknowns is not None
 
     @property
     def barrier_stiffness(self) -> float:
@@ -146,11 +181,15 @@ class Slice(Tissue):
             terms.append(self.contact_energy(start.u))
         return TotalEnergy(terms)
 
-    def system(self, couplings: IntArray) -> System:
-        """See `gyrify.solve.problem.Problem`."""
+    def system(self, couplings: IntArray, unknowns: Unknowns | None = None) -> System:
+        """See `gyrify.solve.problem.Problem`; of all free degrees of freedom unless unknowns are given."""
         pattern = self.pattern.pattern if self.patches is None else self.patches.pattern
-        solver = linear_solver(self.config.solver.linear_solver)
-        return System(self.free, int(np.prod(self.state_shape)), self.mesh.n_dim, pattern, solver, couplings)
+        solver, n_dofs = linear_solver(self.config.solver.linear_solver), int(np.prod(self.state_shape))
+        return System(self.free, n_dofs, self.mesh.n_dim, pattern, solver, couplings, unknowns)
+
+    def increment_system(self, couplings: IntArray) -> System:
+        """See `gyrify.solve.problem.Problem`."""
+        return self.system(couplings, self.unknowns)
 
     def candidates(self, u: FloatArray) -> IntArray:
         """Point pairs of the contour that contact may couple before long."""

@@ -64,7 +64,8 @@ def test_a_run_that_fails_is_a_row(tmp_path: Path) -> None:
     ("answer", "words"),
     [
         (SimpleNamespace(critical_value=1.80961, mode_number=16), "1.810 (mode 16)"),
-        (SimpleNamespace(critical_value=None, mode_number=None), "not up to 2.5"),
+        (SimpleNamespace(critical_value=None, mode_number=None, at_edge=False), "not up to 2.5"),
+        (SimpleNamespace(critical_value=None, mode_number=None, at_edge=True), "below 1"),
         (SolveError("Lost."), "not found (Lost.)"),
         (ValueError("min() arg is an empty sequence"), "not found (no smooth state)"),
     ],

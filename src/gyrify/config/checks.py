@@ -14,7 +14,7 @@ MAX_GROWTH: Final = 10.0
 
 def faults(config: Config) -> list[str]:
     """Return every broken condition of a configuration, in words."""
-    checks = (_layers, _white_matter, _cells, _growth, _increments, _branch, _axial, _transitions)
+    checks = (_layers, _white_matter, _cells, _growth, _increments, _branch, _axial, _transitions, _symmetry)
     return [fault for check in checks if (fault := check(config))]
 
 
@@ -120,3 +120,25 @@ def _transitions(config: Config) -> str:
         f"mesh.refine_cortex = {mesh.refine_cortex} is not allowed: each time takes one of the {white} white "
         "layers. Try at most that number, or more layers in mesh.n_layers."
     )
+
+
+def _symmetry(config: Config) -> str:
+    mesh, is_strip = config.mesh, config.geometry.shape == "strip"
+    if mesh.split != "symmetric":
+        return ""
+    parts = 2 if is_strip else 4
+    columns = mesh.n_around * 2**mesh.refine
+    if columns % parts:
+        lines = "the middle of the strip" if is_strip else "both axes"
+        below = mesh.n_around // parts * parts
+        return (
+            f'mesh.split = "symmetric" is not allowed with {columns} columns: {parts} must divide their '
+            f"number, for a mesh that is its own mirror image about {lines}. "
+            f"Try mesh.n_around = {max(below, 24)} or {below + parts}."
+        )
+    if config.stability.follow_branch:
+        return (
+            'mesh.split = "symmetric" is not allowed with stability.follow_branch = true: the branch may '
+            'break the symmetry. Try mesh.split = "alternating".'
+        )
+    return ""

@@ -112,11 +112,16 @@ class MeshSettings(Section):
     grading: Literal["geometric", "uniform"] = setting(
         "geometric", "White layers: geometric (the first as thick as a cortical one) or uniform."
     )
-    split: Literal["alternating", "one", "random"] = setting(
-        "alternating", "How each quadrilateral is cut into two triangles."
+    split: Literal["alternating", "one", "random", "symmetric"] = setting(
+        "alternating",
+        "How each quadrilateral is cut into two triangles; symmetric: the mesh and the folds are their own "
+        "mirror image.",
     )
     node_jitter: float = setting(
-        1e-3, "Seeded random shift of the points, as a fraction of the local layer.", ge=0, le=0.1
+        1e-3,
+        "Seeded random shift of the points, as a fraction of the local layer (mirrored: symmetric split).",
+        ge=0,
+        le=0.1,
     )
     element: Literal["linear", "quadratic", "mean_dilatation"] = setting(
         "linear", "Finite element.", source=f"{PAPER}, Results (3-node triangles)"

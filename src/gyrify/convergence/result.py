@@ -98,6 +98,11 @@ class Family:
             for level in self.levels
             if not level.is_complete
         ]
+        notes += [
+            f"{metric.name}: {self.verdicts[metric.key].note}."
+            for metric in METRICS
+            if self.verdicts[metric.key].note
+        ]
         gyri = self.verdicts["n_gyri"]
         if gyri.converged is False:
             counts = " → ".join("?" if n is None else f"{n:.0f}" for n in gyri.values)

@@ -44,6 +44,9 @@ class Verdict:
         Verdict; None where it is unknown.
     sentence : str
         Verdict in words.
+    pace : float or None
+        Order by which the last differences fall, where the levels approach a limit monotonically: the order
+        itself, or one outside of 0.5 to 4, which is not trusted.
     """
 
     values: tuple[float | None, ...]
@@ -53,6 +56,17 @@ class Verdict:
     relative_error: float | None
     converged: bool | None
     sentence: str
+    pace: float | None = None
+
+    @property
+    def note(self) -> str:
+        """Why no limit is extrapolated although the levels approach one; else empty."""
+        if self.pace is None or self.order is not None:
+            return ""
+        return (
+            f"differences fall with order {self.pace:.2g}, outside of {_ORDERS[0]:g} to {_ORDERS[1]:g}: no "
+            "limit is extrapolated"
+        )
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values, fit for JSON."""
@@ -84,6 +98,7 @@ def judge(
     if len(finest) < 2:
         return Verdict(kept, None, None, None, None, None, f"unknown: {_missing(kept)}")
     scale = max(abs(finest[-1]), least)
+    pace = None if is_count else observed_pace(finest, scale)
     order = None if is_count else observed_order(finest, scale)
     limit = None if order is None else finest[-1] + (finest[-1] - finest[-2]) / (2.0**order - 1.0)
     error = _error(finest, limit, is_count)
@@ -91,7 +106,7 @@ def judge(
     converged = error == 0.0 if is_count else relative <= tolerance
     sentence = _count_sentence(error) if is_count else _sentence(relative, converged)
     known = relative if math.isfinite(relative) else None
-    return Verdict(kept, order, limit, error, known, converged, sentence)
+    return Verdict(kept, order, limit, error, known, converged, sentence, pace)
 
 
 def _count_sentence(error: float) -> str:
@@ -117,13 +132,18 @@ def _missing(values: tuple[float | None, ...]) -> str:
 
 def observed_order(values: Sequence[float], scale: float) -> float | None:
     """Order of the last three values, if they approach a limit monotonically and at a credible pace."""
+    order = observed_pace(values, scale)
+    return order if order is not None and _ORDERS[0] <= order <= _ORDERS[1] else None
+
+
+def observed_pace(values: Sequence[float], scale: float) -> float | None:
+    """Order by which the differences of the last three values fall, if they are monotone; credible or not."""
     if len(values) < 3:
         return None
     first, second = values[-2] - values[-3], values[-1] - values[-2]
     if min(abs(first), abs(second)) <= _NOISE * scale or first * second < 0.0:
         return None
-    order = math.log2(first / second)
-    return order if _ORDERS[0] <= order <= _ORDERS[1] else None
+    return math.log2(first / second)
 
 
 def _finest(values: tuple[float | None, ...]) -> tuple[float, ...]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from gyrify.energy.cell import scatter_add
 from gyrify.energy.term import EnergyTerm, Evaluation, FloatArray, IntArray, Pattern
+from gyrify.energy.unknowns import Unknowns
 
 
 class FreePattern:
@@ -21,21 +22,35 @@ class FreePattern:
         Number of all degrees of freedom.
     rows, cols : int arrays
         Entries of the upper triangle, in all degrees of freedom, in any order and number.
+    unknowns : Unknowns, optional
+        What the free degrees of freedom follow; then the pattern is that of these unknowns.
     """
 
-    def __init__(self, free: IntArray, n_dofs: int, rows: IntArray, cols: IntArray) -> None:
-        self.free, self.n_dofs = free, n_dofs
-        self._number = np.full(n_dofs, -1, dtype=np.int64)
-        self._number[free] = np.arange(free.size)
-        low, high = self._number[rows], self._number[cols]
-        inside = (low >= 0) & (high >= 0)
-        diagonal = np.arange(free.size) * (free.size + 1)
+    def __init__(
+        self, free: IntArray, n_dofs: int, rows: IntArray, cols: IntArray, unknowns: Unknowns | None = None
+    ) -> None:
+        self.free, self.n_dofs, self.unknowns = free, n_dofs, unknowns
+        self.size = free.size if unknowns is None else unknowns.size
+        if unknowns is None:
+            self._number = np.full(n_dofs, -1, dtype=np.int64)
+            self._number[free] = np.arange(free.size)
+        else:
+            self._number = unknowns.number
+        diagonal = np.arange(self.size) * (self.size + 1)
         # Mostly sorted already, so that a stable sort is much faster than numpy.unique.
-        codes = np.sort(np.concatenate([low[inside] * free.size + high[inside], diagonal]), kind="stable")
+        codes = np.sort(np.concatenate([self._placed(rows, cols)[1], diagonal]), kind="stable")
         self._codes = codes[np.concatenate([[True], codes[1:] != codes[:-1]])]
-        self.rows, self.cols = self._codes // free.size, self._codes % free.size
-        self.indptr = np.searchsorted(self.rows, np.arange(free.size + 1))
+        self.rows, self.cols = self._codes // self.size, self._codes % self.size
+        self.indptr = np.searchsorted(self.rows, np.arange(self.size + 1))
         self._maps: dict[int, tuple[Pattern, IntArray, IntArray]] = {}
+
+    def _placed(self, rows: IntArray, cols: IntArray) -> tuple[IntArray, IntArray]:
+        """Which entries lie among the unknowns, and the code of each."""
+        low, high = self._number[rows], self._number[cols]
+        if self.unknowns is not None:
+            low, high = np.minimum(low, high), np.maximum(low, high)
+        source = np.flatnonzero((low >= 0) & (high >= 0))
+        return source, low[source] * self.size + high[source]
 
     def holds(self, pattern: Pattern) -> bool:
         """Whether every free entry of a term's pattern is in this one."""
@@ -46,20 +61,26 @@ class FreePattern:
         mapped = self._map(pattern)
         if mapped is None:
             raise ValueError("the pattern of a term is not held by the pattern of the sum")
-        scatter_add(*mapped, values, data)
+        scatter_add(*mapped, values if self.unknowns is None else values * self._weight(pattern), data)
+
+    def _weight(self, pattern: Pattern) -> FloatArray:
+        """Factor of each entry: the signs, and 2 where both triangles of it fall on one diagonal entry."""
+        if self.unknowns is None:
+            raise ValueError("free degrees of freedom are unknowns themselves")
+        sign, rows, cols = self.unknowns.sign, pattern.rows, pattern.cols
+        is_folded = (rows != cols) & (self._number[rows] == self._number[cols])
+        return np.asarray(sign[rows] * sign[cols] * np.where(is_folded, 2.0, 1.0))
 
     def _map(self, pattern: Pattern) -> tuple[IntArray, IntArray] | None:
         """Which entries of a term go where; kept for as long as the term keeps its pattern."""
         known = self._maps.get(id(pattern))
         if known is not None and known[0] is pattern:
             return known[1], known[2]
-        low, high = self._number[pattern.rows], self._number[pattern.cols]
-        source = np.flatnonzero((low >= 0) & (high >= 0))
-        codes = low[source] * self.free.size + high[source]
+        source, codes = self._placed(pattern.rows, pattern.cols)
         target = np.minimum(np.searchsorted(self._codes, codes), self._codes.size - 1)
         if not np.array_equal(self._codes[target], codes):
             return None
-        if codes.size >= self.free.size:
+        if codes.size >= self.size:
             self._maps[id(pattern)] = (pattern, source, target)
         return source, target
 

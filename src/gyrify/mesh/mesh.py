@@ -8,6 +8,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from gyrify.mesh.symmetry import Mirror
+
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
@@ -42,6 +44,8 @@ class Mesh:
         Whether the contour is a closed loop (a ring) or runs along one period (a strip).
     period : float or None
         Length of the period in x [mm] of a strip, None for a ring.
+    mirrors : tuple of Mirror
+        Lines across which the mesh is its own mirror image to the last bit, as far as it was built so.
     """
 
     points: FloatArray
@@ -54,6 +58,7 @@ class Mesh:
     patch: IntArray
     is_closed: bool = True
     period: float | None = None
+    mirrors: tuple[Mirror, ...] = ()
 
     def __post_init__(self) -> None:
         for array in (

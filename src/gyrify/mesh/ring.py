@@ -8,6 +8,7 @@ from gyrify.errors import MeshError
 from gyrify.mesh.mesh import FloatArray, Mesh
 from gyrify.mesh.quality import require_quality
 from gyrify.mesh.sheet import Layers, Sheet, build_sheet
+from gyrify.mesh.symmetry import Mirror, symmetric_field
 
 
 def elliptic_ring(
@@ -46,9 +47,11 @@ def elliptic_ring(
         )
     radius = float(np.sqrt(a * b))
     white = radius * (1.0 - hole_fraction) - T
-    sheet = build_sheet(layers, T / white, (white, T), 2.0 * np.pi * radius)
+    sheet = build_sheet(layers, T / white, (white, T), 2.0 * np.pi * radius, n_mirrors=2)
+    mirrors = tuple(Mirror(axis, image) for axis, image in zip((1, 0), sheet.images, strict=False))
+    points = _bend(sheet, semi_axes, hole_fraction, T)
     mesh = Mesh(
-        points=_bend(sheet, semi_axes, hole_fraction, T),
+        points=symmetric_field(mirrors, points) if mirrors else points,
         cells=sheet.cells,
         region=sheet.region,
         contour=sheet.rows[-1],
@@ -56,6 +59,7 @@ def elliptic_ring(
         clamped=sheet.rows[0],
         across=_normals(sheet, semi_axes, hole_fraction, T),
         patch=sheet.patch,
+        mirrors=mirrors,
     )
     lines = np.unique(sheet.depth[[row[0] for row in sheet.rows]])
     thickness = np.diff(np.minimum(lines, 1.0) * white + np.maximum(lines - 1.0, 0.0) * T)

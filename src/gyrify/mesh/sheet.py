@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from gyrify.errors import MeshError
 from gyrify.mesh.grading import Grading, layer_fractions
 from gyrify.mesh.mesh import GREY, WHITE, FloatArray, IntArray
+from gyrify.mesh.symmetry import Mirror, row_image, symmetric_field, with_middles
 
-Split = Literal["alternating", "one", "random"]
+Split = Literal["alternating", "one", "random", "symmetric"]
 Element = Literal["linear", "quadratic", "mean_dilatation"]
 
 
@@ -31,10 +32,11 @@ class Layers:
         Quadrilaterals along, across, and across the cortex, before refinement.
     grading : {"geometric", "uniform"}
         Thickness of the white layers.
-    split : {"alternating", "one", "random"}
-        Which diagonal splits each quadrilateral.
+    split : {"alternating", "one", "random", "symmetric"}
+        Which diagonal splits each quadrilateral; ``symmetric`` alternates, and the mesh is its own mirror
+        image.
     node_jitter : float
-        Largest random shift of a point over its local layer.
+        Largest random shift of a point over its local layer; mirrored where the split is symmetric.
     seed : int
         Seed of jitter and random split.
     element : {"linear", "quadratic", "mean_dilatation"}
@@ -73,6 +75,8 @@ class Sheet:
         Points of each row.
     interface_row : int
         Which row is the interface.
+    images : tuple of int arrays
+        Of a symmetric sheet, the image (n_points,) of each point: about the position 0, and a quarter.
     """
 
     depth: FloatArray
@@ -82,9 +86,12 @@ class Sheet:
     patch: IntArray
     rows: tuple[IntArray, ...]
     interface_row: int
+    images: tuple[IntArray, ...] = ()
 
 
-def build_sheet(layers: Layers, cortical_share: float, unit: tuple[float, float], width: float) -> Sheet:
+def build_sheet(
+    layers: Layers, cortical_share: float, unit: tuple[float, float], width: float, n_mirrors: int = 1
+) -> Sheet:
     """Divide a wall.
 
     Parameters
@@ -97,6 +104,8 @@ def build_sheet(layers: Layers, cortical_share: float, unit: tuple[float, float]
         Thickness of the white wall and of the cortex [mm]: what a depth of 1 means.
     width : float
         Length of the sheet [mm]: what a position of 1 means.
+    n_mirrors : {1, 2}
+        Lines of symmetry where the split is symmetric: through the position 0, or there and at a quarter.
 
     Returns
     -------
@@ -105,7 +114,7 @@ def build_sheet(layers: Layers, cortical_share: float, unit: tuple[float, float]
     Raises
     ------
     MeshError
-        If there are fewer white layers than times the cortex is refined.
+        If there are fewer white layers than times the cortex is refined, or the columns cannot be symmetric.
     """
     rng = np.random.default_rng(layers.seed)
     lines, columns, interface_row = _rows(layers, cortical_share)
@@ -114,6 +123,10 @@ def build_sheet(layers: Layers, cortical_share: float, unit: tuple[float, float]
     depth = np.repeat(lines, columns)
     along = np.concatenate([np.arange(n) / n for n in columns])
     noise = layers.node_jitter * rng.uniform(-1.0, 1.0, size=(2, depth.size))
+    images = _images(rows, n_mirrors) if layers.split == "symmetric" else ()
+    if images:
+        # along the layers a mirror turns the shift round
+        noise = symmetric_field([Mirror(1, image) for image in images], noise.T).T
     thickness, inwards = _local_thickness(lines, unit, interface_row)
     sideways = np.minimum(thickness, width / columns) / width
     depth, along = (
@@ -126,7 +139,7 @@ def build_sheet(layers: Layers, cortical_share: float, unit: tuple[float, float]
     quads = [np.repeat(np.arange(n), len(part) // n) for part, n in zip(parts, columns[:-1], strict=True)]
     offsets = np.concatenate([[0], np.cumsum(columns[:-1])])
     patch = np.concatenate([offset + quad for offset, quad in zip(offsets, quads, strict=False)])
-    sheet = Sheet(depth, along, np.concatenate(parts), region, patch, rows, interface_row)
+    sheet = Sheet(depth, along, np.concatenate(parts), region, patch, rows, interface_row, images)
     return add_midside_nodes(sheet) if layers.element == "quadratic" else sheet
 
 
@@ -154,6 +167,21 @@ def add_midside_nodes(sheet: Sheet) -> Sheet:
         patch=sheet.patch,
         rows=rows,
         interface_row=sheet.interface_row,
+        images=tuple(with_middles(image, edges) for image in sheet.images),
+    )
+
+
+def _images(rows: tuple[IntArray, ...], n_mirrors: int) -> tuple[IntArray, ...]:
+    """Image of each point about the position 0, and about a quarter."""
+    n = min(row.size for row in rows)
+    if n % (2 * n_mirrors):
+        raise MeshError(
+            f'mesh.split = "symmetric" needs a number of columns that {2 * n_mirrors} divides, and there are '
+            f"{n}.",
+            f"Try mesh.n_around = {n // (2 * n_mirrors) * (2 * n_mirrors)}.",
+        )
+    return tuple(
+        np.concatenate([row_image(row, half_turn) for row in rows]) for half_turn in (False, True)[:n_mirrors]
     )
 
 
@@ -216,7 +244,7 @@ def _band(inner: IntArray, outer: IntArray, row: int, split: Split, rng: np.rand
         corners = [(inner, left, middle), (inner, middle, next_inner), (middle, right, next_inner)]
         return np.stack([np.stack(corner, axis=1) for corner in corners], axis=1).reshape(-1, 3)
     next_outer = np.roll(outer, -1)
-    if split == "alternating":
+    if split in ("alternating", "symmetric"):
         falling = (row + np.arange(inner.size)) % 2 == 0
     elif split == "one":
         falling = np.zeros(inner.size, dtype=bool)

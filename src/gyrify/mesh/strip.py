@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from gyrify.errors import MeshError
-from gyrify.mesh.mesh import Mesh
+from gyrify.mesh.mesh import FloatArray, IntArray, Mesh
 from gyrify.mesh.quality import require_quality
 from gyrify.mesh.sheet import Layers, build_sheet
+from gyrify.mesh.symmetry import Mirror
 
 # The sheet's layers run counter-clockwise, with the outside on the right; in the strip it is on the left.
 _MIRRORED = {3: [0, 2, 1], 6: [0, 2, 1, 5, 4, 3]}
@@ -50,8 +51,10 @@ def periodic_strip(length: float, depth: float, cortical_thickness: float, layer
     white = depth - T
     sheet = build_sheet(layers, T / white, (white, T), length)
     height = np.minimum(sheet.depth, 1.0) * white + np.maximum(sheet.depth - 1.0, 0.0) * T
+    points = np.stack([length * sheet.along, height], axis=1)
+    mirrors = tuple(Mirror(0, image) for image in sheet.images)
     mesh = Mesh(
-        points=np.stack([length * sheet.along, height], axis=1),
+        points=_symmetric(points, length, mirrors[0].image) if mirrors else points,
         cells=np.ascontiguousarray(sheet.cells[:, _MIRRORED[sheet.cells.shape[1]]]),
         region=sheet.region,
         contour=sheet.rows[-1],
@@ -61,7 +64,18 @@ def periodic_strip(length: float, depth: float, cortical_thickness: float, layer
         patch=sheet.patch,
         is_closed=False,
         period=length,
+        mirrors=mirrors,
     )
     levels = np.unique(height[np.concatenate(sheet.rows)])
     require_quality(mesh, length / sheet.rows[-1].size, np.diff(levels))
     return mesh
+
+
+def _symmetric(points: FloatArray, length: float, image: IntArray) -> FloatArray:
+    """Points of which each is at x = length less that of its image, exactly, and as high."""
+    own, unit = np.arange(image.size), np.spacing(length)
+    # on this grid the difference to the length has no rounding
+    x, y = np.round(points[:, 0] / unit) * unit, points[:, 1]
+    x = np.where(own < image, x, length - x[image])
+    middle = np.where(points[:, 0] < 0.25 * length, 0.0, 0.5 * length)
+    return np.stack([np.where(own == image, middle, x), np.where(own < image, y, y[image])], axis=1)

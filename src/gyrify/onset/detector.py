@@ -110,8 +110,7 @@ class Detector:
         """Stable state that an unstable equilibrium leads to."""
         problem, system = self.problem, self._system_for(after)
         stability = problem.config.stability
-        is_perfect = problem.config.mesh.node_jitter == 0.0
-        if is_perfect and not stability.follow_branch:
+        if problem.is_perfect and not stability.follow_branch:
             eigenvalue = self._tangent(after, before, system).lowest().eigenvalue
             raise self._unstable(after, eigenvalue)
         settled = settle(
@@ -152,6 +151,9 @@ class Detector:
         if onset is not None:
             self.onset = onset
             text += f"; stability is lost at growth time {onset.growth_time:.6g} in mode {onset.mode_number}"
+        if self.problem.unknowns is not None:
+            advice = 'Choose another mesh.split than "symmetric", or a dissipation.kind.'
+            return SolveError(f"{text}.", advice)
         return SolveError(
             f"{text}.",
             "Set stability.follow_branch = true to fold, mesh.node_jitter above 0 to drift into folds, "

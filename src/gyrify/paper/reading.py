@@ -165,6 +165,19 @@ def variants(mechanics: Mechanics) -> list[Mechanics]:
     ]
 
 
+def edges(mechanics: Mechanics) -> list[str]:
+    """What of a reading is the least or the most that was tried, in words."""
+    tried = {
+        "dissipation number": (mechanics.number, _numbers(mechanics.dissipation)),
+        "imperfection": (mechanics.imperfection, list(IMPERFECTIONS)),
+    }
+    return [
+        f"{name} {value:g} is the {'smallest' if value == min(values) else 'largest'} that was tried"
+        for name, (value, values) in tried.items()
+        if len(values) > 1 and value in (min(values), max(values))
+    ]
+
+
 def _numbers(dissipation: str) -> list[float]:
     """All numbers that are tried with a kind of dissipation."""
     return sorted([*FINER[dissipation], *(c for kind, c in DISSIPATION if kind == dissipation)])

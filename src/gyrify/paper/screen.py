@@ -16,7 +16,7 @@ from typing import Final
 from gyrify.config import Config
 from gyrify.paper.bench import Bench
 from gyrify.paper.candidate import Candidate
-from gyrify.paper.reading import grid, variants
+from gyrify.paper.reading import edges, grid, variants
 from gyrify.study import Point
 
 BEST: Final = 3
@@ -66,6 +66,12 @@ class Screening:
     candidates: tuple[Candidate, ...]
     is_complete: bool
     live: int
+
+    @property
+    def note(self) -> str:
+        """What of the best reading lies on the edge of what was tried; empty where nothing does."""
+        found = edges(self.candidates[0].mechanics) if self.candidates else []
+        return f"In the best reading {' and '.join(found)}: a better one may lie beyond." if found else ""
 
 
 def screen(

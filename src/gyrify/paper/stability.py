@@ -63,7 +63,7 @@ def _critical(config: Config, end: float) -> str:
     except ValueError:  # on a mesh so coarse that no state counts as smooth
         return "not found (no smooth state)"
     if found.critical_value is None:
-        return f"not up to {end:.3g}"
+        return f"below {LOWEST:g}" if found.at_edge else f"not up to {end:.3g}"
     return f"{found.critical_value:.3f} (mode {found.mode_number})"
 
 

@@ -14,7 +14,8 @@ from gyrify.config import Config
 from gyrify.errors import ConfigError, SolveError
 from gyrify.report.plot.dispersion import annulus_of
 from gyrify.theory.annulus import BaseState
-from gyrify.theory.onset import Parameter, stability_margin, state_at
+from gyrify.theory.margin import stability_margin
+from gyrify.theory.onset import Parameter, state_at
 
 FloatArray = NDArray[np.float64]
 Span = tuple[float, float]
@@ -81,18 +82,38 @@ def onset_curve(config: Config, keys: tuple[str, str], spans: tuple[Span, Span])
         return OnsetCurve((), f"No onset curve: the exact annulus does not cover {what}.")
     along = keys.index(scanned)
     sections = _spaced(spans[1 - along], _SECTIONS)
-    found = [_crossings(config.replace(**{keys[1 - along]: at}), scanned, spans[along]) for at in sections]
+    cuts = [_section(config.replace(**{keys[1 - along]: at}), scanned, spans[along]) for at in sections]
+    found = [cut.values for cut in cuts]
     depth = max(map(len, found))
-    rows = np.array([[*values, *[np.nan] * (depth - len(values))] for values in found]).reshape(-1, depth)
+    rows = np.array([[*values, *[np.nan] * (depth - len(values))] for values in found])
     lines = [_smooth(sections, rows[:, k]) for k in range(depth)]
     lines = [line[:, ::-1] if along == 0 else line for line in lines if line.size]
     circle = "a circle" if config.geometry.shape == "circle" else "a circle of the same area"
+    rest = _without_curve([cut.outcome for cut in cuts if not cut.values], len(cuts))
     if not lines:
-        return OnsetCurve((), f"The exact annulus ({circle}) does not change stability in this range.")
-    return OnsetCurve(tuple(lines), f"Onset: exact, for {circle}, without dissipation.")
+        return OnsetCurve((), f"The exact annulus ({circle}) does not change stability in this range{rest}.")
+    return OnsetCurve(tuple(lines), f"Onset: exact, for {circle}, without dissipation{rest}.")
 
 
-def _crossings(config: Config, key: str, span: Span) -> list[float]:
+@dataclass(frozen=True)
+class _Section:
+    """One line through the plane: where stability changes on it, and what it is if it does not."""
+
+    values: list[float]
+    outcome: str
+
+
+def _without_curve(outcomes: list[str], n_sections: int) -> str:
+    """What is known of the sections that no curve crosses, in words."""
+    if not outcomes:
+        return ""
+    if len(outcomes) == n_sections and len(set(outcomes)) == 1:
+        return f": {outcomes[0]} throughout"
+    counts = ", ".join(f"{outcomes.count(kind)} {kind}" for kind in dict.fromkeys(outcomes))
+    return f"; of {n_sections} sections no curve crosses {counts}"
+
+
+def _section(config: Config, key: str, span: Span) -> _Section:
     """Values of the scanned parameter at which stability changes; none where theory finds no base state."""
     annulus, parameter = annulus_of(config.replace(**{key: span[1]})), SCANNED[key]
     guess: BaseState | None = None
@@ -105,13 +126,14 @@ def _crossings(config: Config, key: str, span: Span) -> list[float]:
     values = _spaced(span, _SCAN).tolist()
     try:
         margins = [margin(value) for value in values]
-        return [
+        found = [
             float(brentq(margin, values[i], values[i + 1], rtol=_ACCURACY))
             for i in range(len(values) - 1)
             if (margins[i] < 0.0) != (margins[i + 1] < 0.0)
         ]
+        return _Section(found, "unstable" if margins[0] < 0.0 else "stable")
     except (ConfigError, SolveError):
-        return []
+        return _Section([], "without a smooth state")
 
 
 def _spaced(span: Span, n: int) -> FloatArray:

@@ -140,6 +140,7 @@ def _summary(screening: Screening) -> str:
         told += (
             f"Time ran out: {screening.live} could still be among the best three. Run the same command again."
         )
+    told += f" {screening.note}" if screening.note else ""
     hidden = n - min(n, SHOWN)
     return told + (f" The best {SHOWN} are shown; readings.csv has all." if hidden else "")
 

@@ -64,8 +64,7 @@ def find_equilibrium(
         try:
             evaluations = total.evaluate(at.u, project_psd=False)
             factor = system.factorise_data(system.assemble(evaluations, lambda at=at: candidates(at.u)))  # type: ignore[misc]
-            du = np.zeros(system.n_dofs)
-            du[system.free] = -factor.solve(at.gradient)
+            du = system.scatter(-factor.solve(at.gradient))
         except SolveError:
             result = Result.SINGULAR
             break

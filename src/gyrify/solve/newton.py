@@ -47,7 +47,7 @@ class Iterate:
         Displacement [mm].
     value : float
         Total energy [Pa mm^2]; infinite where not admissible.
-    gradient : (n_free,) float array
+    gradient : (n_unknowns,) float array
         Its gradient [Pa mm].
     residual : float
         Largest nodal force [Pa mm].
@@ -62,8 +62,8 @@ class Iterate:
     def at(total: TotalEnergy, u: FloatArray, system: System) -> Iterate:
         """Evaluate a state."""
         value, gradient = total.slope(u)
-        free = gradient.ravel()[system.free]
-        return Iterate(u, value, free, largest_force(free, system) if np.isfinite(value) else np.inf)
+        residual = system.largest_force(gradient) if np.isfinite(value) else np.inf
+        return Iterate(u, value, system.gather(gradient), residual)
 
 
 def minimise(
@@ -92,7 +92,7 @@ def minimise(
         Couplings near a state, for the pattern.
     watch : callable
         Called at each iteration; may raise to stop.
-    mass : (n_free,) float array, optional
+    mass : (n_unknowns,) float array, optional
         Lumped area [mm^2]: an indefinite Hessian is then shifted by a multiple of it instead of projected,
         which is what leads along the flat valleys of a tissue that buckles without dissipation.
     model : QuasiNewton, optional
@@ -144,14 +144,6 @@ def _step(
     return after, result
 
 
-def largest_force(gradient: FloatArray, system: System) -> float:
-    """Largest Euclidean norm of the force on a free point [Pa mm]."""
-    forces = np.zeros(system.n_dofs)
-    forces[system.free] = gradient
-    by_point = forces.reshape(-1, system.n_dim)
-    return float(np.sqrt(np.einsum("pi,pi->p", by_point, by_point).max()))
-
-
 def _line_search(
     total: TotalEnergy, at: Iterate, direction: FloatArray, system: System
 ) -> tuple[float, Iterate, Result]:
@@ -160,8 +152,7 @@ def _line_search(
     slope = float(np.einsum("i,i->", at.gradient, direction))
     if not slope < 0.0:  # a negative pivot next to zero was overlooked
         return 0.0, at, Result.LINE_SEARCH
-    du = np.zeros(at.u.shape)
-    du.ravel()[system.free] = direction
+    du = system.scatter(direction).reshape(at.u.shape)
     step = total.max_step(at.u, du)
     if step < SMALLEST_STEP:
         return 0.0, at, Result.BLOCKED

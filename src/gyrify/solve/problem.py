@@ -91,6 +91,10 @@ class Problem(Protocol):
         """Linear system with couplings in its pattern."""
         ...
 
+    def increment_system(self, couplings: IntArray) -> System:
+        """The same for the increments, of as few unknowns as the symmetry that is kept leaves."""
+        ...
+
     def candidates(self, u: FloatArray) -> IntArray:
         """Point pairs that contact may couple soon."""
         ...

@@ -66,7 +66,7 @@ def _taken_up(
     watch: Callable[[], None],
 ) -> Increments:
     """Increments as they were when a state had just been accepted, the carried factor included."""
-    system = problem.system(state.couplings)
+    system = problem.increment_system(state.couplings)
     after = state
     while after.index > 0 and problem.old_steps > 0:
         before = recall(after.index - 1)

@@ -8,6 +8,7 @@ import numpy as np
 
 from gyrify.energy.term import Evaluation, Pattern
 from gyrify.energy.total import FreePattern
+from gyrify.energy.unknowns import Unknowns
 from gyrify.solve.linear import Factor, LinearSolver
 from gyrify.solve.types import FloatArray, IntArray
 
@@ -30,6 +31,8 @@ class System:
         Does the factorisation.
     couplings : (n_pairs, 2) int array
         Coupled pairs of points to start with.
+    unknowns : Unknowns, optional
+        What the free degrees of freedom follow; each is an unknown of its own by default.
     """
 
     def __init__(
@@ -40,8 +43,9 @@ class System:
         base: Pattern,
         solver: LinearSolver,
         couplings: IntArray,
+        unknowns: Unknowns | None = None,
     ) -> None:
-        self.free, self.n_dofs, self.n_dim = free, n_dofs, n_dim
+        self.free, self.n_dofs, self.n_dim, self.unknowns = free, n_dofs, n_dim, unknowns
         self.solver = solver
         self.analyses = self.factorizations = 0
         self._base = base
@@ -55,6 +59,7 @@ class System:
             self.n_dofs,
             np.concatenate([self._base.rows, rows]),
             np.concatenate([self._base.cols, cols]),
+            self.unknowns,
         )
         self.solver.analyse(self.pattern.indptr, self.pattern.cols)
         self.analyses += 1
@@ -67,6 +72,27 @@ class System:
         rows = np.broadcast_to(low[:, None, None] * self.n_dim + axis[:, None], shape)
         cols = np.broadcast_to(high[:, None, None] * self.n_dim + axis[None, :], shape)
         return rows.ravel(), cols.ravel()
+
+    def gather(self, gradient: FloatArray) -> FloatArray:
+        """(n_unknowns,) part of a gradient (n_points, n_dim) that the unknowns feel."""
+        if self.unknowns is None:
+            return gradient.ravel()[self.free]
+        return self.unknowns.gather(gradient.ravel())
+
+    def scatter(self, step: FloatArray) -> FloatArray:
+        """(n_dofs,) change of all degrees of freedom, of a step (n_unknowns,)."""
+        if self.unknowns is not None:
+            return self.unknowns.scatter(step)
+        full = np.zeros(self.n_dofs)
+        full[self.free] = step
+        return full
+
+    def largest_force(self, gradient: FloatArray) -> float:
+        """Largest Euclidean norm of the force on a free point, of a gradient (n_points, n_dim) [Pa mm]."""
+        forces = np.zeros(self.n_dofs)
+        forces[self.free] = gradient.ravel()[self.free]
+        by_point = forces.reshape(-1, self.n_dim)
+        return float(np.sqrt(np.einsum("pi,pi->p", by_point, by_point).max()))
 
     def assemble(self, evaluations: Sequence[Evaluation], candidates: Callable[[], IntArray]) -> FloatArray:
         """Values of the summed Hessian on the pattern; ``candidates`` gives couplings it lacks."""

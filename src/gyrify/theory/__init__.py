@@ -9,15 +9,15 @@ from gyrify.theory.half_space import (
     critical_wrinkle,
     neutral_curve,
 )
+from gyrify.theory.margin import Margin, stability_margin
 from gyrify.theory.modes import Mode, SecondVariation, lowest_eigenvalue, surface_limit
 from gyrify.theory.onset import (
     Crossing,
-    Margin,
+    Crossings,
     critical_growth_ratio,
     critical_growth_time,
     crossings,
     stability_map,
-    stability_margin,
 )
 
 __all__ = [
@@ -26,6 +26,7 @@ __all__ = [
     "BaseState",
     "Bilayer",
     "Crossing",
+    "Crossings",
     "Margin",
     "Mode",
     "SecondVariation",

@@ -18,8 +18,9 @@ from gyrify.theory.half_space import (
     critical_wrinkle,
     neutral_curve,
 )
+from gyrify.theory.margin import scaled
 from gyrify.theory.modes import dispersion
-from gyrify.theory.onset import scaled, stability_map
+from gyrify.theory.onset import stability_map
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -77,7 +78,7 @@ def neutral_curves(stiffness_ratios: Sequence[float], bilayer: Bilayer | None = 
         case = replace(bilayer, stiffness_ratio=ratio)
         axes.plot(waves, neutral_curve(case, waves), color=colour, label=ratio_name(ratio))
         first = critical_wrinkle(case)
-        if not first.is_surface:
+        if not first.at_edge:
             axes.plot(first.scaled_thickness, first.load, "o", color=colour, markersize=5)
     surface = critical_surface(bilayer).load
     axes.axhline(surface, color="0.3", linestyle=":")
@@ -114,7 +115,7 @@ def critical_curves(
             onsets = [critical_wrinkle(Bilayer(ratio, nu, loading=loading)) for ratio in stiffness_ratios]
             name = f"{_LOADING_NAMES[loading]}, ν = {nu:g}"
             left.plot(stiffness_ratios, [w.strain for w in onsets], style, color=colour, label=name)
-            length = [np.nan if w.is_surface else w.wavelength for w in onsets]
+            length = [np.nan if w.at_edge else w.wavelength for w in onsets]
             right.plot(stiffness_ratios, length, style, color=colour)
     limits = [asymptotic_wrinkle(ratio) for ratio in stiffness_ratios]
     left.plot(stiffness_ratios, [w.strain for w in limits], ":", color="0.3", label="large-contrast limit")

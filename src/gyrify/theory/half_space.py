@@ -6,15 +6,16 @@ positive definite. See `Bilayer` for the load g and the readings.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq, minimize_scalar
 
 from gyrify.errors import ConfigError
-from gyrify.theory.bilayer import INCOMPRESSIBLE, Bilayer, Loading
-from gyrify.theory.wave import layered_stiffness, lowest_stiffness
+from gyrify.theory.bilayer import INCOMPRESSIBLE, Bilayer, Layer, Loading
+from gyrify.theory.neutral import EXACT, LoadScan, dispersion, first_sign_change
+from gyrify.theory.wave import lowest_stiffness
 
 __all__ = [
     "INCOMPRESSIBLE",
@@ -30,13 +31,12 @@ __all__ = [
 
 FloatArray = NDArray[np.float64]
 
-# Loads scanned, as parts of the load (g - 1) of the bare surface or of the largest one.
-_LOAD_PARTS = np.geomspace(1e-4, 2.0, 28)
-_LARGEST_STRAIN = 1.0
-_SURFACE_LOADS = 1.0 + np.geomspace(1e-2, 4.0, 60)
+# Strains g - 1 of a bare tissue's own growth, or of the compression, at which its surface is looked at.
+_SURFACE_STRAINS = np.geomspace(1e-2, 4.0, 60)
+# Waves scanned at first, and how far the scan goes on where the first wave lies at its end.
 _SCALED_THICKNESSES = np.geomspace(0.03, 8.0, 20)
+_SHORTEST, _LONGEST = 64.0, 1e-5
 _TINY = 1e-9
-_EXACT = 1e-13
 _ROUGH = 1e-3
 
 
@@ -47,53 +47,51 @@ class Wrinkle:
     Attributes
     ----------
     load : float
-        Critical g [-]: growth stretch of the film, or 1 / stretch of the compressed bilayer.
+        Critical g [-]: growth stretch of the film, or 1 / stretch of the compressed bilayer; infinite where
+        nothing is critical up to `searched`.
     strain : float
         Compression 1 - 1/g [-].
     wavelength : float
-        Wavelength / thickness of the film, both deformed [-]; 0 at the surface limit.
+        Wavelength / thickness of the film, both deformed [-]; 0 at the limit of short waves, infinite at that
+        of long ones.
     scaled_thickness : float
-        k h of the wave in the reference configuration [-]; infinite at the surface limit.
+        k h of the wave in the reference configuration [-]; infinite at the limit of short waves, 0 at that of
+        long ones.
+    searched : float
+        Largest load that was tried [-].
     """
 
     load: float
     strain: float
     wavelength: float
     scaled_thickness: float
+    searched: float = np.inf
 
     @property
     def is_surface(self) -> bool:
         """Whether waves far shorter than the film's thickness come first (Biot's surface instability)."""
         return self.wavelength == 0.0
 
+    @property
+    def is_substrate(self) -> bool:
+        """Whether waves far longer than the film is thick come first: the substrate's own surface."""
+        return self.scaled_thickness == 0.0
 
-def dispersion(bilayer: Bilayer, load: float, scaled_thickness: ArrayLike) -> FloatArray:
-    """Stiffness of the surface against waves, at one load.
+    @property
+    def at_edge(self) -> bool:
+        """Whether no finite wave is the first: the answer is a limit of the waves, or of the loads tried."""
+        return self.is_surface or self.is_substrate or not np.isfinite(self.load)
 
-    Parameters
-    ----------
-    bilayer : Bilayer
-        The parameters.
-    load : float
-        g [-], at least 1.
-    scaled_thickness : (n,) array_like
-        k h [-] of the waves, reference configuration.
-
-    Returns
-    -------
-    (n,) float array
-        Lowest surface stiffness / (k x Young's modulus of the film) [-]; negative means unstable. Minus
-        infinity where the bilayer is unstable even if its surface is held.
-
-    Raises
-    ------
-    ConfigError
-        If the load is below 1.
-    """
-    if not 1.0 <= load < np.inf:
-        raise ConfigError(f"The load is {load}.", "It must be finite and at least 1.")
-    film, below = bilayer.matrices("film", load)[0], bilayer.half_space("substrate", load)[0]
-    return lowest_stiffness(layered_stiffness(film, below, np.atleast_1d(scaled_thickness)))
+    @property
+    def note(self) -> str:
+        """What the answer is a limit of, in words; empty for a finite wave."""
+        if not np.isfinite(self.load):
+            return f"Nothing is critical up to a load of {self.searched:g}, the largest that was tried."
+        if self.is_surface:
+            return "The shorter the wave, the earlier: the film's own surface is critical first."
+        if self.is_substrate:
+            return "The longer the wave, the earlier: the substrate's own surface is critical first."
+        return ""
 
 
 def neutral_curve(bilayer: Bilayer, scaled_thickness: ArrayLike) -> FloatArray:
@@ -110,71 +108,60 @@ def neutral_curve(bilayer: Bilayer, scaled_thickness: ArrayLike) -> FloatArray:
     -------
     (n,) float array
         Lowest critical g [-] of each wave; infinite where there is none up to twice the load
-        g - 1 of the bare film's surface, or up to g = 3.
+        g - 1 of the first bare surface, the film's or the substrate's, or up to g = 3.
     """
     waves = np.atleast_1d(np.asarray(scaled_thickness, dtype=np.float64))
-    return _neutral(bilayer, waves, critical_surface(bilayer).load, _EXACT)
+    return LoadScan.of(bilayer, _surfaces(bilayer)[0].load).neutral(waves, EXACT)
 
 
-def _neutral(bilayer: Bilayer, waves: FloatArray, surface: float, tolerance: float) -> FloatArray:
-    """Neutral curve, given the critical load of the film's bare surface."""
-    loads = 1.0 + _LOAD_PARTS * min(surface - 1.0, _LARGEST_STRAIN)
-    film, below = bilayer.matrices("film", loads), bilayer.half_space("substrate", loads)
-    curve = np.full(len(waves), np.inf)
-    for i, kh in enumerate(waves):
-        stiffness = lowest_stiffness(layered_stiffness(film, below, np.full(len(loads), kh)))
-        bracket = _first_sign_change(loads, stiffness)
-        if bracket is not None:
-            curve[i] = _root(bilayer, kh, *bracket, tolerance)
-    return curve
-
-
-def _first_sign_change(loads: FloatArray, stiffness: FloatArray) -> tuple[float, float] | None:
-    """Neighbouring loads between which the stiffness first turns negative; an unloaded bilayer is stable."""
-    unstable = np.flatnonzero(stiffness < 0.0)
-    if len(unstable) == 0:
-        return None
-    return float(np.append(1.0, loads)[unstable[0]]), float(loads[unstable[0]])
-
-
-def _root(bilayer: Bilayer, kh: float, low: float, high: float, tolerance: float) -> float:
-    """Load between two others at which one wave is neutral, to a relative tolerance in g - 1."""
-
-    def stiffness(load: float) -> float:
-        # Bounded, so that minus infinity does not break the root-finding.
-        return max(float(dispersion(bilayer, load, kh)[0]), -1.0)
-
-    return float(brentq(stiffness, low, high, xtol=tolerance * (high - 1.0), rtol=_EXACT))
-
-
-def critical_surface(bilayer: Bilayer) -> Wrinkle:
-    """Surface instability of a bare half-space of the film's tissue (Biot 1963; any growth).
+def critical_surface(bilayer: Bilayer, layer: Layer = "film") -> Wrinkle:
+    """Surface instability of a bare half-space of one layer's tissue (Biot 1963; any growth).
 
     Parameters
     ----------
     bilayer : Bilayer
-        The parameters; the substrate plays no part.
+        The parameters.
+    layer : {"film", "substrate"}
+        Whose tissue; the other plays no part.
 
     Returns
     -------
     Wrinkle
-        With zero wavelength; the load is infinite where nothing is critical up to g = 5, as for tissue of
-        small nu that grows in all directions: it loses volume and is hardly compressed along the layers.
+        The limit of short waves (film), or of long ones (substrate), at the film's load g. Infinite where
+        nothing is critical up to a stretch of 5 of the layer itself, as for tissue of small nu that grows in
+        all directions: it loses volume and is hardly compressed along the layers; or for a substrate that
+        does not grow.
     """
-    stiffness = lowest_stiffness(bilayer.half_space("film", _SURFACE_LOADS))
-    bracket = _first_sign_change(_SURFACE_LOADS, stiffness)
+    scale = bilayer.growth_ratio if layer == "substrate" and bilayer.loading != "compression" else 1.0
+    wavelength, kh = (0.0, np.inf) if layer == "film" else (np.inf, 0.0)
+    searched = float(1.0 + scale * _SURFACE_STRAINS[-1])
+    if not np.isfinite(scale):
+        return Wrinkle(np.inf, 1.0, wavelength, kh, searched)
+    loads = 1.0 + scale * _SURFACE_STRAINS
+    bracket = first_sign_change(loads, lowest_stiffness(bilayer.half_space(layer, loads)))
     if bracket is None:
-        return Wrinkle(np.inf, 1.0, 0.0, np.inf)
+        return Wrinkle(np.inf, 1.0, wavelength, kh, searched)
     load = brentq(
-        lambda g: max(float(lowest_stiffness(bilayer.half_space("film", g))[0]), -1.0), *bracket, xtol=1e-13
+        lambda g: max(float(lowest_stiffness(bilayer.half_space(layer, g))[0]), -1.0), *bracket, xtol=1e-13
     )
-    return Wrinkle(load, 1.0 - 1.0 / load, 0.0, np.inf)
+    return Wrinkle(load, 1.0 - 1.0 / load, wavelength, kh, searched)
+
+
+def _surfaces(bilayer: Bilayer) -> tuple[Wrinkle, Wrinkle]:
+    """The limits of short and of long waves, the first to be critical first; the film's where they agree.
+
+    The interface needs no look of its own: its stiffness is the sum of those of two half-spaces, and positive
+    while both surfaces are stable.
+    """
+    film, substrate = critical_surface(bilayer), critical_surface(bilayer, "substrate")
+    return (substrate, film) if substrate.load < film.load - _TINY else (film, substrate)
 
 
 def critical_wrinkle(bilayer: Bilayer) -> Wrinkle:
-    """First wave to lose stability as the load rises from 1.
+    """First wave to lose stability as the load rises from 1: the infimum over all waves.
 
-    Waves of k h between 0.03 and 8 are tried, and the surface limit for shorter ones.
+    Waves of k h between 0.03 and 8 are tried, more where the first one lies at an end of these, and the two
+    limits: the film's own surface (short waves) and the substrate's own (long waves).
 
     Parameters
     ----------
@@ -184,28 +171,46 @@ def critical_wrinkle(bilayer: Bilayer) -> Wrinkle:
     Returns
     -------
     Wrinkle
-        The surface limit where it comes first or at the same load; the load is infinite where nothing is
-        critical up to g = 3.
+        A limit where it comes first or at the same load (`Wrinkle.at_edge`, told by `Wrinkle.note`); the load
+        is infinite where nothing is critical up to g = 3.
     """
-    surface = critical_surface(bilayer)
-    # A rough curve finds the valley; then its floor is sought.
-    curve = _neutral(bilayer, _SCALED_THICKNESSES, surface.load, _ROUGH)
+    limit = _surfaces(bilayer)[0]
+    scan = LoadScan.of(bilayer, limit.load)
+    waves, curve = _extended(scan, limit.load)
     best = int(np.argmin(curve))
-    if curve[best] >= 1.0 + (1.0 + _ROUGH) * (surface.load - 1.0):
-        return surface
-    ends = np.log(_SCALED_THICKNESSES[[max(best - 1, 0), min(best + 1, len(curve) - 1)]])
-    low, high = 1.0 + 0.5 * (curve[best] - 1.0), 1.0 + 1.3 * (curve[best] - 1.0)
+    if curve[best] >= 1.0 + (1.0 + _ROUGH) * (limit.load - 1.0):
+        return replace(limit, searched=float(scan.loads[-1])) if not np.isfinite(limit.load) else limit
+    largest = 2.0 * scan.loads[-1]
+    # The rough curve has found the valley; now its floor is sought.
     wave = minimize_scalar(
-        lambda log_kh: _root(bilayer, float(np.exp(log_kh)), low, high, _EXACT),
-        bounds=ends,
+        lambda log_kh: min(scan.neutral(np.exp([log_kh]), EXACT)[0], largest),
+        bounds=np.log(waves[[max(best - 1, 0), min(best + 1, len(curve) - 1)]]),
         method="bounded",
         options={"xatol": 1e-5},
     )
     load, kh = float(wave.fun), float(np.exp(wave.x))
-    if load >= surface.load - _TINY:
-        return surface
+    if load >= limit.load - _TINY:
+        return limit
     across, along = bilayer.state("film", load)[0][:2]
-    return Wrinkle(load, 1.0 - 1.0 / load, 2.0 * np.pi * float(along / across) / kh, kh)
+    wavelength = 2.0 * np.pi * float(along / across) / kh
+    return Wrinkle(load, 1.0 - 1.0 / load, wavelength, kh, float(scan.loads[-1]))
+
+
+def _extended(scan: LoadScan, limit: float) -> tuple[FloatArray, FloatArray]:
+    """Waves and their rough neutral loads, with more waves at an end as long as the first one lies there."""
+    waves, step = _SCALED_THICKNESSES, _SCALED_THICKNESSES[1] / _SCALED_THICKNESSES[0]
+    curve = scan.neutral(waves, _ROUGH)
+    while np.isfinite(curve).any() and curve.min() < 1.0 + (1.0 + _ROUGH) * (limit - 1.0):
+        best = int(np.argmin(curve))
+        if best == 0 and waves[0] > _LONGEST:
+            wave = waves[:1] / step
+            waves, curve = np.append(wave, waves), np.append(scan.neutral(wave, _ROUGH), curve)
+        elif best == len(waves) - 1 and waves[-1] < _SHORTEST:
+            wave = waves[-1:] * step
+            waves, curve = np.append(waves, wave), np.append(curve, scan.neutral(wave, _ROUGH))
+        else:
+            break
+    return waves, curve
 
 
 def asymptotic_wrinkle(stiffness_ratio: float) -> Wrinkle:

@@ -3,6 +3,9 @@
 In mode n the increment is U(R) cos n Theta radially and V(R) sin n Theta along the circle; its gradient is
 F_11: U', F_22: (U + n V)/R, F_12: -(n U + V)/R, F_21: V' (1 radial, 2 circumferential). The state is stable
 where int (gradient . A . gradient) R dR is positive for every (U, V) that vanishes at the clamp.
+
+Mode 0 has two parts that do not see each other: U(R) radially, with the change of F_33 where that is free,
+and the twist V(R) about the clamped hole, which is the mode (U sin n Theta, -V cos n Theta) at n = 0.
 """
 
 from __future__ import annotations
@@ -55,11 +58,15 @@ class SecondVariation:
         K_0, K_1, K_2, whitened by the mass so that the mass is the identity [Pa/mm^2].
     root : (n_nodes - 1, n_nodes - 1) float array
         Lower Cholesky factor of the mass of one component [mm].
+    axial : (n_nodes - 1,) float array or None
+        Whitened coupling of U in mode 0 to a free F_33, over the root of the stiffness of F_33 itself: its
+        square is what relaxing F_33 takes away; None where F_33 is held.
     """
 
     state: BaseState
     powers: FloatArray
     root: FloatArray
+    axial: FloatArray | None = None
 
     @classmethod
     def of(cls, state: BaseState) -> SecondVariation:
@@ -80,14 +87,23 @@ class SecondVariation:
         turning = np.stack(
             [np.hstack(row) for row in ([none, none], [none, hoop], [-hoop, none], [none, none])]
         )
-        tangent = np.moveaxis(state.response(line.points).in_plane, 0, -1)
-        return cls(state, _quadratic_forms(fixed, turning, tangent), root)
+        response = state.response(line.points)
+        tangent = np.moveaxis(response.in_plane, 0, -1)
+        axial = None
+        if state.annulus.out_of_plane == "generalised":
+            axial = _axial_coupling(response.moduli, slopes, hoop, area)
+        return cls(state, _quadratic_forms(fixed, turning, tangent), root, axial)
 
     def matrix(self, number: int) -> FloatArray:
-        """Whitened second variation [Pa/mm^2] of mode `number`; mode 0 has radial unknowns only."""
-        size = len(self.root) * (1 if number == 0 else 2)
+        """Whitened second variation [Pa/mm^2] of mode `number`, radial unknowns first.
+
+        In mode 0 the two components are not coupled, and a free F_33 follows the radial one.
+        """
         matrix: FloatArray = self.powers[0] + number * self.powers[1] + number**2 * self.powers[2]
-        return matrix[:size, :size]
+        if number == 0 and self.axial is not None:
+            size = len(self.root)
+            matrix[:size, :size] -= np.outer(self.axial, self.axial)
+        return matrix
 
     def lowest(self, number: int) -> float:
         """Lowest eigenvalue [Pa/mm^2] of mode `number`."""
@@ -97,9 +113,8 @@ class SecondVariation:
     def mode(self, number: int) -> Mode:
         """The softest increment of mode `number`."""
         value, vector = eigh(self.matrix(number), subset_by_index=[0, 0])
-        components = vector.reshape(-1, len(self.root))
         fields = np.zeros((2, len(self.root) + 1))
-        fields[: len(components), 1:] = solve_triangular(self.root.T, components.T).T
+        fields[:, 1:] = solve_triangular(self.root.T, vector.reshape(2, -1).T).T
         radial, circumferential = fields / fields.flat[np.argmax(np.abs(fields))]
         return Mode(number, float(value[0]), self.state.line.nodes, radial, circumferential)
 
@@ -116,6 +131,17 @@ def _quadratic_forms(fixed: FloatArray, turning: FloatArray, tangent: FloatArray
             np.tensordot(turning, stress_turning, axes=([0, 1], [0, 1])),
         ]
     )
+
+
+def _axial_coupling(moduli: FloatArray, slopes: FloatArray, hoop: FloatArray, area: FloatArray) -> FloatArray:
+    """(n_unknowns,) coupling of the whitened U to F_33, over the root of the stiffness of F_33.
+
+    The stiffness is that of the tissue at a uniform change of F_33; a law that made it negative would be
+    unstable without any other motion.
+    """
+    stiffness = float(area @ moduli[:, 2, 2])
+    force = np.sqrt(area) * moduli[:, :2, 2].T
+    return np.asarray((force[0] @ slopes + force[1] @ hoop) / np.sqrt(stiffness))
 
 
 def surface_limit(state: BaseState) -> float:

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from gyrify.errors import ConfigError
 from gyrify.theory.annulus import Annulus, BaseState, base_state
-from gyrify.theory.modes import SecondVariation, surface_limit
+from gyrify.theory.margin import scaled, stability_margin
+from gyrify.theory.modes import SecondVariation
 
 FloatArray = NDArray[np.float64]
 Parameter = Literal["growth_ratio", "growth_time", "stiffness_ratio", "cortical_thickness"]
 
-_MODE_SPACING = 1.4
-# Beyond this many waves per 2 pi thicknesses a wave sees a half-space, which the surface limit covers.
-_SHORTEST = 5.0
+# Margin at an end of the scanned range, over the largest in it, below which a crossing may lie just outside.
+_NEAR = 1e-3
 
 
 @dataclass(frozen=True)
@@ -35,11 +35,13 @@ class Crossing:
     mode_number : int or None
         n of the mode that crosses; None for the surface limit.
     wavelength : float
-        Length of one wave on the deformed contour [mm]; 0 for the surface limit.
+        Length of one wave on the deformed contour [mm]; 0 for the surface limit, infinite for mode 0.
     growth_time : float
         t [time].
     becomes : {"unstable", "stable"}
         What the annulus becomes as the parameter rises.
+    at_edge : bool
+        Whether the mode is the last that was tried, so that a shorter wave may come first.
     """
 
     parameter: Parameter
@@ -48,62 +50,26 @@ class Crossing:
     wavelength: float
     growth_time: float
     becomes: Literal["unstable", "stable"]
+    at_edge: bool = False
 
 
-@dataclass(frozen=True)
-class Margin:
-    """The weakest mode of one state: its number (None for the surface limit) and its stability margin [-]."""
+class Crossings(tuple[Crossing, ...]):
+    """Every change of stability that a scan has found, in the order of the values.
 
-    value: float
-    mode_number: int | None
-
-
-def scaled(annulus: Annulus, eigenvalue: ArrayLike, mode_number: ArrayLike) -> FloatArray:
-    """Eigenvalue [Pa/mm^2] over the shear stiffness of a wave as long, mu (n / outer radius)^2 [-]."""
-    wave_number = np.maximum(mode_number, 1) / annulus.outer_radius
-    return np.asarray(eigenvalue, dtype=np.float64) / (annulus.moduli_grey[0] * wave_number**2)
-
-
-def coarse_modes(annulus: Annulus) -> list[int]:
-    """Mode numbers to scan: all up to 5, then in geometric steps until waves are shorter than the cortex."""
-    last = int(np.ceil(_SHORTEST * annulus.outer_radius / annulus.cortical_thickness))
-    modes = [0, 1, 2]
-    while modes[-1] < last:
-        modes.append(min(last, max(modes[-1] + 1, round(modes[-1] * _MODE_SPACING))))
-    return modes
-
-
-def stability_margin(state: BaseState) -> Margin:
-    """Weakest mode of a state, over all mode numbers and the surface limit.
-
-    Parameters
+    Attributes
     ----------
-    state : BaseState
-        The axisymmetric state.
-
-    Returns
-    -------
-    Margin
-        Negative where the state is unstable.
+    notes : tuple of str
+        What the range that was searched leaves open, in words; empty where it leaves nothing open.
     """
-    annulus, variation = state.annulus, SecondVariation.of(state)
-    known: dict[int, float] = {}
 
-    def margin(number: int) -> float:
-        if number not in known:
-            known[number] = float(scaled(annulus, variation.lowest(number), number))
-        return known[number]
+    notes: tuple[str, ...] = ()
 
-    coarse = coarse_modes(annulus)
-    best = min(coarse, key=margin)
-    step = max(1, round(best * (_MODE_SPACING - 1.0)) // 2)
-    while best > 1:
-        better = min((best - step, best, min(best + step, coarse[-1])), key=margin)
-        if better == best and step == 1:
-            break
-        best, step = better, max(1, step // 2) if better == best else step
-    surface = surface_limit(state)
-    return Margin(surface, None) if surface < margin(best) else Margin(margin(best), best)
+    @classmethod
+    def of(cls, found: Iterable[Crossing], notes: Iterable[str]) -> Crossings:
+        """Crossings with what is to be said of their search."""
+        crossings = cls(found)
+        crossings.notes = tuple(notes)
+        return crossings
 
 
 def state_at(
@@ -118,7 +84,7 @@ def state_at(
 
 def crossings(
     annulus: Annulus, parameter: Parameter, values: Sequence[float], growth_time: float | None = None
-) -> tuple[Crossing, ...]:
+) -> Crossings:
     """Every change of stability along a scanned parameter.
 
     Stability need not be monotone in the parameter, so nothing is bisected before the scan.
@@ -136,8 +102,9 @@ def crossings(
 
     Returns
     -------
-    tuple of Crossing
-        In the order of the values, to about 1e-6 of the value; empty where nothing is critical.
+    Crossings
+        A tuple in the order of the values, to about 1e-6 of the value; empty where nothing is critical. Its
+        `notes` say what the range leaves open.
 
     Raises
     ------
@@ -163,25 +130,50 @@ def crossings(
             root = brentq(margin, values[i], values[i + 1], xtol=1e-9, rtol=1e-7)
             state = state_at(annulus, parameter, root, time, guess)
             found.append(_crossing(parameter, root, state, margins[i] < 0.0))
-    return tuple(found)
+    return Crossings.of(found, _notes(parameter, values, margins, found))
+
+
+def _notes(
+    parameter: Parameter, values: Sequence[float], margins: Sequence[float], found: Sequence[Crossing]
+) -> Iterator[str]:
+    """What the range and the modes that were searched leave open."""
+    name, low, high = parameter.replace("_", " "), float(values[0]), float(values[-1])
+    if margins[0] < 0.0:
+        yield (
+            f"The annulus is unstable already at the lowest {name} scanned ({low:.6g}): a crossing may lie "
+            "below it. Scan from a smaller value."
+        )
+    for end, value in ((margins[0], low), (margins[-1], high)):
+        if 0.0 <= end < _NEAR * max(map(abs, margins)):
+            yield (
+                f"The margin nearly vanishes at the end of the range, {name} = {value:.6g}: a crossing may "
+                "lie just outside of it. Scan a wider range."
+            )
+    for crossing in found:
+        if crossing.at_edge:
+            yield (
+                f"At {name} = {crossing.value:.6g} the weakest mode is the last one tried, "
+                f"{crossing.mode_number}: a shorter wave may come first."
+            )
 
 
 def _crossing(parameter: Parameter, value: float, state: BaseState, was_unstable: bool) -> Crossing:
-    number = stability_margin(state).mode_number
-    outer = float(state.radius(state.annulus.outer_radius))
+    weakest = stability_margin(state)
+    number, length = weakest.mode_number, 2.0 * np.pi * float(state.radius(state.annulus.outer_radius))
     return Crossing(
         parameter,
         value,
         number,
-        2.0 * np.pi * outer / number if number else 0.0,
+        0.0 if number is None else length / number if number else np.inf,
         state.growth_time,
         "stable" if was_unstable else "unstable",
+        weakest.at_edge,
     )
 
 
 def critical_growth_ratio(
     annulus: Annulus, values: Sequence[float] | None = None, growth_time: float | None = None
-) -> tuple[Crossing, ...]:
+) -> Crossings:
     """Growth ratios at which the annulus changes stability (see `crossings`).
 
     Parameters
@@ -195,7 +187,7 @@ def critical_growth_ratio(
 
     Returns
     -------
-    tuple of Crossing
+    Crossings
         Every one in the range; empty where nothing is critical.
     """
     return crossings(
@@ -206,7 +198,7 @@ def critical_growth_ratio(
     )
 
 
-def critical_growth_time(annulus: Annulus, values: Sequence[float] | None = None) -> tuple[Crossing, ...]:
+def critical_growth_time(annulus: Annulus, values: Sequence[float] | None = None) -> Crossings:
     """Growth times at which the annulus changes stability (see `crossings`).
 
     Parameters
@@ -218,7 +210,7 @@ def critical_growth_time(annulus: Annulus, values: Sequence[float] | None = None
 
     Returns
     -------
-    tuple of Crossing
+    Crossings
         Every one in the range; empty where nothing is critical.
     """
     return crossings(

@@ -67,10 +67,13 @@ def half_space_stiffness(matrix: FloatArray, above: bool = False) -> FloatArray:
     (2, 2) float array
         Z [Pa], symmetric; NaN where the tissue itself has lost strong ellipticity, so that no wave decays.
     """
-    _, vectors, count = schur(matrix, output="real", sort="lhp" if above else "rhp")
+    # Tractions in units of the tissue's own stiffness, or those of a very soft one would drown in rounding.
+    unit = float(np.sqrt(np.linalg.norm(matrix[2:, :2]) / np.linalg.norm(matrix[:2, 2:])))
+    scale = np.array([1.0, 1.0, unit, unit])
+    _, vectors, count = schur(matrix * scale / scale[:, None], output="real", sort="lhp" if above else "rhp")
     if count != 2:
         return np.full((2, 2), np.nan)
-    stiffness = np.linalg.solve(vectors[:2, :2].T, vectors[2:, :2].T).T
+    stiffness = unit * np.linalg.solve(vectors[:2, :2].T, vectors[2:, :2].T).T
     return -stiffness if above else stiffness
 
 

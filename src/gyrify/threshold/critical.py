@@ -93,13 +93,13 @@ def _find(
         for below, above in pairwise(point for point in scanned if _is_known(point))
         if _is_beyond(below, level) != _is_beyond(above, level)
     )
-    main = main_crossing(crossings)
+    main, edges = main_crossing(crossings), _edges(parameter, scanned, crossings, level, tolerance)
     return Threshold(
         parameter=parameter,
         definition=definition,
         critical_value=main.value if main else None,
         reason="" if main else _reason(parameter, scanned, level, visible),
-        notes=tuple(scan.notes),
+        notes=(*scan.notes, *edges),
         bracket=main.bracket if main else None,
         mode_number=main.mode_number if main else None,
         wavelength_mm=main.wavelength_mm if main else None,
@@ -109,7 +109,32 @@ def _find(
         level=level if visible else None,
         evaluations=scan.evaluations,
         wall_s=0.0,
+        at_edge=bool(edges),
     )
+
+
+def _edges(
+    parameter: str, scanned: Sequence[Scanned], crossings: Sequence[Crossing], level: float, tolerance: float
+) -> list[str]:
+    """Where the answer lies at an end of what was scanned, or beyond it."""
+    known = [point for point in scanned if _is_known(point)]
+    if not known:
+        return []
+    name, low, high = parameter, known[0].value, known[-1].value
+    notes = []
+    if _is_beyond(known[0], level):
+        state = "unstable" if known[0].gi is None else "folded"
+        notes.append(
+            f"The slice is {state} already at the lowest value of {name} that was computed ({low:.6g}): a "
+            "crossing may lie below it. Scan from a smaller value."
+        )
+    for end in (low, high):
+        if any(abs(crossing.value - end) <= 2.0 * tolerance * abs(end) for crossing in crossings):
+            notes.append(
+                f"A crossing lies at the end of the range ({name} = {end:.6g}): scan a wider range to see "
+                "what is on its other side."
+            )
+    return notes
 
 
 def _check(definition: str, level: float, tolerance: float | None) -> None:

@@ -90,6 +90,9 @@ class Threshold:
         Equilibria (or runs) computed.
     wall_s : float
         Time taken [s].
+    at_edge : bool
+        Whether the answer may lie outside of what was scanned: the slice is unstable (or folded) at the
+        lowest value already, or changes at an end of the range. A note says which.
     """
 
     parameter: str
@@ -106,6 +109,7 @@ class Threshold:
     level: float | None
     evaluations: int
     wall_s: float
+    at_edge: bool = False
 
     def as_dict(self) -> dict[str, Any]:
         """Return the fields nested as in ``gyrify threshold --json``."""

@@ -52,8 +52,18 @@ def _stability(_: History, summary: dict[str, Any]) -> list[str]:
     return [note] if is_told else []
 
 
+def _symmetry(history: History, summary: dict[str, Any]) -> list[str]:
+    if history.config.mesh.split != "symmetric" or summary["stable"] is not False:
+        return []
+    return [
+        "The folds are held mirror-symmetric, and the last state is unstable without dissipation: folds that "
+        'break the symmetry may come first. To see them, run again with mesh.split = "alternating".'
+    ]
+
+
 CHECKS: Final[tuple[Callable[[History, dict[str, Any]], list[str]], ...]] = (
     _resolution,
     _crossing,
     _stability,
+    _symmetry,
 )

@@ -24,6 +24,8 @@ RESIDUAL_MARGIN: Final = 1e-3
 # Largest energy created, over the work of growth; more if the increments are so few that the work of growth
 # itself is known less well.
 ENERGY_BOUND: Final = 0.02
+# Difference between a state and its mirror image [mm]; they agree to the last bit where all is well.
+SYMMETRY_BOUND: Final = 1e-9
 # Rounding of a sum over all cells.
 DESCENT_BOUND: Final = 1e-10
 
@@ -65,6 +67,7 @@ def verify(run: str | Path) -> Verification:
     if increments:
         checks += _check_increments(history.slice.stepping.criterion.force, increments)
         checks.append(_check_balance(increments))
+        checks += _check_symmetry(history)
     if history.config.contact.enabled:
         checks += _check_contact(increments, rows, _jumps(history))
     checks += check_metrics(history, folder, rows, summary)
@@ -140,6 +143,16 @@ def _check_increments(tolerance: float, increments: list[Increment]) -> Iterator
     yield _above_zero(
         "elastic volume", [increment.min_J_elastic for increment in increments], "The smallest J_e"
     )
+
+
+def _check_symmetry(history: History) -> Iterator[Check]:
+    """States are their own mirror image where the mesh is."""
+    mirrors = history.mesh.mirrors
+    if mirrors:
+        states = [history.journal.state(number).u for number in range(1, len(history))]
+        gaps = [max(float(np.abs(mirror.of(u) - u).max()) for mirror in mirrors) for u in states]
+        what = "The largest difference between a state and its mirror image [mm]"
+        yield _at_most("symmetry", gaps, SYMMETRY_BOUND, what)
 
 
 def _jumps(history: History) -> set[int]:

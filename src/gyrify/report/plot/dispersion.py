@@ -21,7 +21,7 @@ from gyrify.report.plot.shown import Shown
 from gyrify.report.plot.style import DASHES, HUES, SINGLE, add_legend, literal
 from gyrify.report.sheet import FloatArray
 from gyrify.theory import Annulus, SecondVariation, base_state, surface_limit
-from gyrify.theory.onset import scaled
+from gyrify.theory.margin import scaled
 
 # Growth times that are scanned; modes up to waves of two cortical thicknesses.
 _TIMES: Final = 17
