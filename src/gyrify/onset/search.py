@@ -56,13 +56,15 @@ class OnsetSearch:
         self._mesh, self._duration = problem.mesh, problem.config.growth.duration
         ideal = problem.config.with_overrides(IDEAL)
         is_perfect = problem.config.mesh.node_jitter == 0.0
-        self._problem = problem.varied(ideal) if is_perfect else Slice(ideal)
+        # A name of its own: a reference to this object would keep the factors until a collection of cycles.
+        perfect = problem.varied(ideal) if is_perfect else Slice(ideal)
+        self._problem = perfect
         self.onset: Onset | None = None
         self.changes: list[StabilityChange] = []
         self.mark, self.lost_at = 0, None  # type: tuple[int, float | None]
         system = self._problem.system(np.empty((0, 2), dtype=np.int64))
         start = SmoothState(0.0, self._problem, 0.0, np.zeros(self._problem.state_shape))
-        self._branch = SmoothBranch(lambda fraction: (self._problem, fraction), start, system, watch)
+        self._branch = SmoothBranch(lambda fraction: (perfect, fraction), start, system, watch)
         self._lowest = LowestEigenvalue(self._branch, system)
         self._last, self._n_negative = start, 0
 

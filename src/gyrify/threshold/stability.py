@@ -10,11 +10,10 @@ import numpy as np
 
 from gyrify.config import Config
 from gyrify.errors import SolveError
-from gyrify.model import Slice
 from gyrify.onset.crossing import LowestEigenvalue
 from gyrify.onset.modes import wave_of
 from gyrify.onset.smooth import IDEAL, SmoothBranch, SmoothState, grown
-from gyrify.threshold.parameters import configured
+from gyrify.threshold.problems import Problems
 from gyrify.threshold.result import Becomes, Crossing, Scanned
 
 # The scan ends after so many values in a row without a smooth state.
@@ -39,7 +38,8 @@ class StabilityScan:
 
     def __init__(self, config: Config, parameter: str, watch: Callable[[], None] = lambda: None) -> None:
         self._config, self._parameter, self._watch = config.with_overrides(IDEAL), parameter, watch
-        self._first: Slice | None = None
+        # An object of its own: a bound method would keep this one, and its factors, in a cycle of references.
+        self._problem_at = Problems(self._config, parameter)
         self.notes: list[str] = []
         self._branch: SmoothBranch
         self._lowest: LowestEigenvalue
@@ -147,20 +147,6 @@ class StabilityScan:
     def eigenvalue(self, value: float) -> float:
         """Lowest eigenvalue at a value of the parameter [Pa/mm^2]."""
         return self._lowest.at(value)
-
-    def _problem_at(self, value: float) -> tuple[Slice, float]:
-        """Tissue and growth fraction; what depends on the mesh alone is shared."""
-        if self._parameter == "growth.time":
-            if self._first is None:
-                self._first = Slice(self._config)
-            return self._first, value / self._config.growth.duration
-        config = configured(self._config, self._parameter, value)
-        if self._first is None or self._parameter.startswith("geometry"):
-            problem = Slice(config)
-        else:
-            problem = self._first.varied(config)
-        self._first = self._first or problem
-        return problem, 1.0
 
     def _start(self, values: Sequence[float]) -> None:
         """First state of the branch, followed in growth: at the lowest value, or else at the highest."""
