@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from gyrify.errors import SolveError
 from gyrify.solve.linear import Factor
 from gyrify.solve.system import System
 from gyrify.solve.types import FloatArray
 
-# First shift over the largest diagonal entry of M^-1 K, and how often it may be raised.
+# First shift over the largest diagonal entry of M^-1 K, whatever its sign, and how often it may be raised.
 _FIRST_SHIFT = 1e-5
 _RAISES = 60
 
@@ -57,7 +59,7 @@ def shifted_factor(
         If no shift is enough.
     """
     diagonal = system.pattern.indptr[:-1]
-    tau = max(least, _FIRST_SHIFT * float((data[diagonal] / mass).max()))
+    tau = max(least, _FIRST_SHIFT * float(np.abs(data[diagonal] / mass).max()))
     for _ in range(_RAISES):
         shifted = data.copy()
         shifted[diagonal] += tau * mass

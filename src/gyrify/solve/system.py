@@ -9,6 +9,7 @@ import numpy as np
 from gyrify.energy.term import Evaluation, Pattern
 from gyrify.energy.total import FreePattern
 from gyrify.energy.unknowns import Unknowns
+from gyrify.errors import SolveError
 from gyrify.solve.linear import Factor, LinearSolver
 from gyrify.solve.types import FloatArray, IntArray
 
@@ -109,14 +110,29 @@ class System:
         return data
 
     def factorise_data(self, data: FloatArray) -> Factor:
-        """Factor, with its inertia, of a matrix given by its values on the pattern."""
-        self.factorizations += 1
+        """Factor, with its inertia, of a matrix given by its values on the pattern.
+
+        Raises
+        ------
+        SolveError
+            If the matrix is singular, or holds something that is no finite number.
+        """
+        self._begin(data)
         return self.solver.factorise(data)
 
     def factorise_definite(self, data: FloatArray) -> Factor | None:
-        """Factor where no pivot is found negative, else None; see `LinearSolver`."""
-        self.factorizations += 1
+        """Factor where no pivot is found negative, else None; see `LinearSolver` and `factorise_data`."""
+        self._begin(data)
         return self.solver.factorise_definite(data)
+
+    def _begin(self, data: FloatArray) -> None:
+        """Count a factorisation, of numbers alone: a NaN is no negative pivot, and would pass for stable."""
+        self.factorizations += 1
+        if not np.isfinite(data).all():
+            raise SolveError(
+                "The stiffness matrix holds values that are not finite numbers.",
+                "Raise solver.increments, or check that all stiffnesses are finite.",
+            )
 
 
 def _pairs(pattern: Pattern, n_dim: int) -> IntArray:
