@@ -26,6 +26,8 @@ def test_a_power_law_gives_its_order_and_its_limit(order: float, slope: float) -
 def test_only_the_three_finest_levels_count() -> None:
     power = [2.0 + 0.1 * 0.25**level for level in range(3)]
     assert judge([7.0, *power], 0.02).order == pytest.approx(2.0)
+    wild = [1.0, 1.2, 1.1]
+    assert judge([7.0, *wild], 0.02).error == judge(wild, 0.02).error
 
 
 @pytest.mark.parametrize(
@@ -72,6 +74,34 @@ def test_a_count_is_converged_when_it_repeats() -> None:
     found = judge([20.0, 21.0, 23.0], 0.02, is_count=True)
     assert (found.converged, found.error, found.order) == (False, 2.0, None)
     assert judge([0.0, 0.0], 0.02, is_count=True).converged is True
+
+
+@pytest.mark.parametrize(("tolerance", "converged"), [(0.03 / 1.01 * (1 + 1e-12), True), (0.0297, False)])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_converged_is_an_error_of_at_most_the_tolerance(
+    tolerance: float, converged: bool, sign: float
+) -> None:
+    """Three times a difference of 0.01, over 1.01; the size of a negative value is that of its opposite."""
+    assert judge([sign * 1.0, sign * 1.01], tolerance).converged is converged
+    assert judge([1.0, 1.0], 0.0).converged is True
+
+
+@pytest.mark.parametrize(("step", "has_order"), [(0.9e-9, False), (1.1e-9, True)])
+def test_differences_below_a_billionth_are_rounding_and_have_no_order(step: float, has_order: bool) -> None:
+    found = judge([100.0 - 300.0 * step, 100.0 - 100.0 * step, 100.0], 0.02)
+    assert (found.order is not None) is has_order
+
+
+@pytest.mark.parametrize(
+    ("order", "is_credible"), [(0.499, False), (0.501, True), (3.999, True), (4.001, False)]
+)
+def test_orders_from_a_half_to_four_are_credible(order: float, is_credible: bool) -> None:
+    found = judge([2.0 + 0.5 ** (order * level) for level in range(3)], 0.02)
+    assert (found.order is not None) is is_credible
+
+
+def test_a_count_that_differs_by_one_is_not_converged() -> None:
+    assert judge([22.0, 23.0], 0.5, is_count=True).converged is False
 
 
 def test_rounding_is_no_difference() -> None:
