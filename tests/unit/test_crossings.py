@@ -64,6 +64,9 @@ def test_the_root_lies_in_its_bracket_and_its_bracket_on_both_sides_of_the_exact
     assert low <= root.value <= high
     assert {low, high} <= set(asked)
     assert root.value == pytest.approx(exact, abs=3e-4)
+    # singular to a thousandth of the smaller eigenvalue at the ends, or bracketed as closely as asked for
+    ends = min(abs(float(curve(0.0))), abs(float(curve(1.5))))
+    assert abs(root.pair.eigenvalue) <= 1e-3 * ends or high - low <= 2e-6
     # the state that is kept is the computed one closest to singular
     assert abs(curve(root.state.value)) == min(abs(curve(value)) for value in asked)
     assert root.pair.eigenvalue == sign * float(curve(root.state.value))
