@@ -24,6 +24,23 @@ def test_each_limit_raises_with_its_name() -> None:
         Watch(0.0, 1.0)()
 
 
+@pytest.mark.parametrize(("now", "is_reached"), [(99.9, False), (100.0, True), (1e6, True)])
+def test_a_limit_is_reached_at_its_value_and_not_before(
+    monkeypatch: pytest.MonkeyPatch, now: float, is_reached: bool
+) -> None:
+    clock = [5.0]
+    monkeypatch.setattr("gyrify.limits.time.monotonic", lambda: clock[0])
+    monkeypatch.setattr("gyrify.limits.resident_memory", lambda: now)
+    watches = (Watch(100.0, 0.0), Watch(0.0, 100.0))
+    clock[0] += now
+    for watch in watches:
+        if is_reached:
+            with pytest.raises(LimitReachedError):
+                watch()
+        else:
+            watch()
+
+
 def test_resident_memory_is_of_this_process() -> None:
     before, block = resident_memory(), bytearray(b"1") * 50_000_000
     assert 30.0 < resident_memory() - before < 200.0
