@@ -90,6 +90,14 @@ def test_points_on_the_outline_have_no_depth() -> None:
     assert np.all(sulcal_depth(contour, contour) < 0.005)
 
 
+def test_no_depth_is_negative() -> None:
+    """Rounding would put about half of the points of a convex contour above its outline."""
+    contour = polar(np.full(400, 40.0), 1.2)
+    depth = sulcal_depth(contour, contour)
+    assert (depth >= 0.0).all()
+    assert depth.max() < 1e-2
+
+
 def test_one_deep_slit_does_not_bend_the_shape() -> None:
     curve = low_mode_shape(slit_disc(3.0, 20.0)).contour()
     assert np.hypot(curve[:, 0], curve[:, 1]) == pytest.approx(np.full(400, 40.0), abs=0.02)
@@ -125,6 +133,13 @@ def test_twin_crowns_of_equal_height_are_one_gyrus() -> None:
     profile = np.tile([0.0, 1.0, 0.9, 1.0], 6)
     maxima, minima = periodic_extrema(profile, 0.3)
     assert len(maxima) == len(minima) == 6
+
+
+def test_of_two_crowns_of_almost_equal_height_the_higher_one_is_the_gyrus() -> None:
+    """They differ by three thousandths of the range; the first is the higher one, then the second."""
+    profile = np.interp(np.arange(100), [0, 30, 50, 70, 100], [0.0, 1.0, 0.95, 0.997, 0.0])
+    assert periodic_extrema(profile, 0.5)[0].tolist() == [30]
+    assert periodic_extrema(profile[::-1], 0.5)[0].tolist() == [69]
 
 
 def test_wavelength_is_the_outline_per_gyrus() -> None:

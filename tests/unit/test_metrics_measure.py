@@ -51,6 +51,13 @@ def test_a_smooth_state_has_no_depth_and_no_gyri() -> None:
     assert not smooth.self_intersecting
 
 
+def test_the_thickness_of_a_smooth_state_is_a_mean_along_all_of_it() -> None:
+    """The inner circle is 1 mm off the centre: from 1 mm on one side to 3 mm on the other."""
+    smooth = measure(40.0 * CIRCLE, 38.0 * CIRCLE + [1.0, 0.0])
+    assert smooth.n_gyri == 0
+    assert smooth.thickness_crown == smooth.thickness_fundus == pytest.approx(2.0, abs=0.05)
+
+
 def test_names_are_those_of_the_run_folder() -> None:
     record = measure(FOLDED, INNER, closing_radius=8.0)
     assert list(record.as_dict()) == [

@@ -34,3 +34,9 @@ def test_saddles_decide(prominence: float, expected: list[int]) -> None:
     """Heights 4, 3, 5 over saddles 2 and 2.5, ends 0: prominences 2, 0.5 and 5; 4 is a plateau's middle."""
     profile = np.array([0.0, 4.0, 2.0, 3.0, 3.0, 3.0, 2.5, 5.0, 0.0])
     assert prominent_maxima(profile, prominence).tolist() == expected
+
+
+def test_a_maximum_that_rises_by_just_the_prominence_counts() -> None:
+    profile = np.array([0.0, 1.0, 0.0])
+    assert prominent_maxima(profile, 1.0).tolist() == [1]
+    assert prominent_maxima(profile, float(np.nextafter(1.0, 2.0))).size == 0
