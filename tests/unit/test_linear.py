@@ -92,6 +92,42 @@ def test_new_values_on_an_analysed_pattern(name: str, rng: np.random.Generator) 
         assert factor.solve(right) == pytest.approx(np.linalg.solve([[a, 1.0], [1.0, 2.0]], right))
 
 
+@SOLVERS
+@pytest.mark.parametrize(("a", "is_definite"), [(3.0, True), (0.6, True), (0.4, False), (-3.0, False)])
+def test_a_definite_factor_is_given_where_the_matrix_is_and_none_elsewhere(
+    name: str, a: float, is_definite: bool
+) -> None:
+    """[[a, 1], [1, 2]] is definite from a = 1/2 on; that it is not is no error."""
+    solver = linear_solver(name)
+    solver.analyse(np.array([0, 2, 3]), np.array([0, 1, 1]))
+    factor = solver.factorise_definite(np.array([a, 1.0, 2.0]))
+    assert (factor is not None) is is_definite
+    if factor is not None:
+        assert factor.solve(np.ones(2)) == pytest.approx(np.linalg.solve([[a, 1.0], [1.0, 2.0]], np.ones(2)))
+
+
+@SOLVERS
+@pytest.mark.parametrize("small", [1e-6, -1e-6])
+def test_a_small_pivot_is_no_other_pivot(name: str, small: float) -> None:
+    factor = factorised(name, np.diag([small, 1.0]))
+    assert factor.n_negative == (small < 0.0)
+    assert factor.solve(np.array([small, 1.0])) == pytest.approx([1.0, 1.0], rel=1e-9)
+
+
+def test_superlu_gives_no_inertia_where_it_leaves_the_diagonal() -> None:
+    with pytest.raises(SolveError, match="left the diagonal"):
+        factorised("superlu", np.array([[0.0, 1.0], [1.0, 0.0]]))
+
+
+@pytest.mark.skipif("pardiso" not in available(), reason="PARDISO is not installed")
+def test_an_error_of_pardiso_is_never_passed_over() -> None:
+    from gyrify.solve.pardiso import _Matrices
+
+    matrices = _Matrices(-2, np.array([1, 2], dtype=np.int32), np.array([1], dtype=np.int32), {1: 0})
+    with pytest.raises(SolveError, match="phase 99 with error"):
+        matrices._call(99, np.empty(0))
+
+
 def test_superlu_says_that_a_matrix_is_singular() -> None:
     solver = SuperLU()
     solver.analyse(np.array([0, 2, 3]), np.array([0, 1, 1]))

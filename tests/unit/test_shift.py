@@ -12,7 +12,7 @@ from gyrify.energy.term import Evaluation, Hessian
 from gyrify.energy.total import TotalEnergy
 from gyrify.errors import SolveError
 from gyrify.solve.definite import DefiniteHessian
-from gyrify.solve.linear import linear_solver
+from gyrify.solve.linear import SuperLU, linear_solver
 from gyrify.solve.shift import shifted_factor
 from gyrify.solve.stability import Tangent
 from gyrify.solve.system import System
@@ -122,6 +122,27 @@ def test_an_eigenpair_is_refused_where_its_residual_is_large(error: float, is_ac
     else:
         with pytest.raises(SolveError, match="above 1e-06"):
             found._checked(v)
+
+
+def test_a_guess_of_the_eigenvalue_saves_every_factorisation_but_one() -> None:
+    """The first shift is beyond it then; without one, a hundred-thousandth is doubled until it is."""
+    found = tangent(np.array([-3.0, 4.0]), np.ones(2))
+    before = found._system.factorizations
+    assert found._definite(-3.0).n_negative == 0
+    assert found._system.factorizations - before == 1
+    found._definite(0.0)
+    assert found._system.factorizations - before > 10
+
+
+def test_a_factor_that_is_refused_next_to_a_singular_state_is_made_in_the_other_way() -> None:
+    class Cautious(SuperLU):
+        def factorise_definite(self, data: np.ndarray) -> None:  # noqa: ARG002
+            return None
+
+    shared = System(np.arange(2), 2, 2, DIAGONAL, Cautious(), NONE)
+    evaluation = Evaluation(0.0, np.zeros((1, 2)), Hessian(DIAGONAL, np.array([1e-9, 4.0])))
+    factor = Tangent([evaluation], shared, np.ones(2), lambda: NONE)._definite(0.0)
+    assert factor.solve(np.array([1e-9, 4.0])) == pytest.approx([1.0, 1.0])
 
 
 def test_a_tangent_whose_pattern_is_out_of_date_is_refused() -> None:
