@@ -44,6 +44,41 @@ def test_two_runs_at_the_ends_decide_agreement(onset: float, passed: bool) -> No
     assert threshold_verdict(rows, EQUAL).passed is passed
 
 
+@pytest.mark.parametrize(
+    ("smooth", "folded", "passed"),
+    [
+        ([1.6], [1.62], False),
+        ([1.8], [1.85], False),
+        ([1.63], [1.79], True),
+        ([1.6], [1.7], None),
+        ([1.7], [1.81], None),
+        ([1.0], [], None),
+        ([3.6], [], False),
+        # what is smooth again beyond the first folds tells nothing of them
+        ([1.65, 1.9], [1.75, 2.5], True),
+        ([1.0, 1.9], [1.75, 2.5], None),
+    ],
+)
+def test_a_bracket_decides_only_if_it_lies_inside_or_outside_of_what_agrees(
+    smooth: list[float], folded: list[float], passed: bool | None
+) -> None:
+    """5 % about 1.71 are 1.6245 to 1.7955."""
+    rows = {Case(EQUAL, growth): Row(gi=VISIBLE) for growth in smooth}
+    rows |= {Case(EQUAL, growth): Row(gi=VISIBLE + 1e-3) for growth in folded}
+    assert threshold_verdict(rows, EQUAL).passed is passed
+
+
+def test_folds_are_seen_above_an_index_of_1005_and_first_where_they_first_are() -> None:
+    gi = {1.0: 1.005, 1.5: 1.0051, 2.0: 1.0, 2.5: 1.4}
+    rows = {Case(EQUAL, growth): Row(gi=index) for growth, index in gi.items()}
+    bracket = visible_bracket(rows, EQUAL)
+    assert bracket is not None
+    assert (bracket.low, bracket.high) == (1.0, 1.5)
+    assert visible_bracket({Case(EQUAL, 1.0): Row(gi=1.2), Case(EQUAL, 2.0): Row(gi=1.3)}, EQUAL) is None
+    above = {Case(EQUAL, 3.0): Row(gi=1.0), Case(EQUAL, 36.0): Row(gi=1.4)}
+    assert visible_bracket(above, EQUAL) is None
+
+
 def test_a_wide_bracket_decides_nothing() -> None:
     rows = {Case(EQUAL, 1.0): Row(), Case(EQUAL): Row(gi=1.4)}
     assert threshold_verdict(rows, EQUAL).passed is None

@@ -11,7 +11,7 @@ from gyrify.errors import ConfigError, MeshError
 from gyrify.metrics import closing_outline, gyrification_index, min_gap, self_intersecting
 from gyrify.metrics.contour import edge_lengths, filled, offset_outline
 from gyrify.metrics.gap import DETOUR
-from gyrify.metrics.gyrification import closing_length
+from gyrify.metrics.gyrification import closing_length, exposed_length
 
 DEFINITIONS = ["hull", "closing", "exposed"]
 
@@ -75,6 +75,13 @@ def test_two_discs_are_exposed_up_to_where_the_rolling_disc_bridges_them() -> No
     assert gyrification_index(contour, "exposed", 10.0) == pytest.approx(length / exposed, rel=2e-3)
     bridged = exposed + 2 * 10.0 * math.radians(60)
     assert gyrification_index(contour, "closing", 10.0) == pytest.approx(length / bridged, rel=2e-4)
+
+
+def test_the_ends_of_the_exposed_part_are_found_within_an_edge() -> None:
+    """Edges of 0.5 to 3 mm, cut by four ends: without a search inside of them, the mean error is 1.2 mm."""
+    exact = 4 * 20.0 * math.radians(120)
+    errors = [exposed_length(filled(two_discs(n=n)), 10.0) - exact for n in (30, 37, 44, 51, 58, 65, 90, 200)]
+    assert np.abs(errors).mean() < 0.9
 
 
 def test_a_hollow_wider_than_the_disc_is_all_exposed() -> None:
