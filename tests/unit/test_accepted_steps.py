@@ -10,7 +10,6 @@ from made_up_energy import MadeUp, blind_system, minimised
 from test_newton import DIAGONAL, NONE, Well, solved, system
 
 from gyrify.solve.linear import SuperLU
-from gyrify.solve.newton import largest_force
 from gyrify.solve.quasi_newton import QuasiNewton
 from gyrify.solve.result import Result
 from gyrify.solve.system import System
@@ -128,10 +127,11 @@ def test_a_residual_at_the_tolerance_has_converged_and_one_above_it_has_not() ->
 
 def test_the_residual_is_the_largest_norm_of_the_force_on_a_free_point() -> None:
     """Forces (0, 1), (3, -4) and, on a held point, (9, 9); of the last point one direction is free."""
-    free = np.array([0, 1, 2, 3, 6])
-    points = System(free, 8, 2, DIAGONAL, SuperLU(), NONE)
-    assert largest_force(np.array([0.0, 1.0, 3.0, -4.0, 4.5]), points) == 5.0
-    assert largest_force(np.array([0.0, 1.0, 3.0, -4.0, -5.5]), points) == 5.5
+    points = System(np.array([0, 1, 2, 3, 6]), 8, 2, DIAGONAL, SuperLU(), NONE)
+    forces = np.array([[0.0, 1.0], [3.0, -4.0], [9.0, 9.0], [4.5, 9.0]])
+    assert points.largest_force(forces) == 5.0
+    forces[3, 0] = -5.5
+    assert points.largest_force(forces) == 5.5
 
 
 def test_an_inadmissible_state_is_in_no_balance() -> None:

@@ -11,10 +11,12 @@ import numpy as np
 import pytest
 
 import gyrify.theory.annulus as annulus_module
+import gyrify.theory.margin as margin_module
 import gyrify.theory.onset as onset
 from gyrify.errors import ConfigError, SolveError
 from gyrify.theory import Annulus, SecondVariation, asymptotic_wrinkle, base_state, critical_growth_ratio
-from gyrify.theory.onset import Margin, coarse_modes, crossings, stability_margin
+from gyrify.theory.margin import Margin, coarse_modes, stability_margin
+from gyrify.theory.onset import crossings
 
 STANDARD = Annulus()
 
@@ -65,8 +67,8 @@ def weakest(monkeypatch: pytest.MonkeyPatch, margin: Callable[[int], float], sur
             mu, radius = STANDARD.moduli_grey[0], STANDARD.outer_radius
             return SimpleNamespace(lowest=lambda n: margin(n) * mu * (max(n, 1) / radius) ** 2)
 
-    monkeypatch.setattr(onset, "SecondVariation", Known)
-    monkeypatch.setattr(onset, "surface_limit", lambda _: surface)
+    monkeypatch.setattr(margin_module, "SecondVariation", Known)
+    monkeypatch.setattr(margin_module, "surface_limit", lambda _: surface)
     return stability_margin(SimpleNamespace(annulus=STANDARD))  # type: ignore[arg-type]
 
 
@@ -80,6 +82,18 @@ def test_the_weakest_of_all_modes_is_found_though_few_are_tried(
     weak = weakest(monkeypatch, lambda n: np.log(max(n, 0.5) / number) ** 2 - 0.1)
     assert weak.mode_number == number
     assert weak.value == pytest.approx(-0.1)
+    assert not weak.at_edge
+
+
+def test_the_weaker_of_two_valleys_is_found_and_an_end_is_said_to_be_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The first valley is the wider one, of 9 waves and -0.1; that of 37 goes down to -0.2."""
+    weak = weakest(
+        monkeypatch, lambda n: min(np.log(max(n, 1) / 9) ** 2 - 0.1, 9.0 * np.log(max(n, 1) / 37) ** 2 - 0.2)
+    )
+    assert (weak.mode_number, weak.at_edge) == (37, False)
+    assert weakest(monkeypatch, lambda n: 1.0 / (n + 1)).at_edge
 
 
 @pytest.mark.parametrize("number", [0, 1])
