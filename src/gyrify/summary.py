@@ -6,13 +6,15 @@ import csv
 import json
 import math
 import os
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from gyrify.metrics import Measures, measure
+from gyrify.metrics import Measures
+from gyrify.metrics.measure import measure_valid
 from gyrify.onset.visible import visible_time
 from gyrify.solve.stability import StabilityChange
 from gyrify.store.files import fresh
@@ -20,8 +22,14 @@ from gyrify.store.history import History
 from gyrify.validity import config_warnings, run_warnings
 
 
-def measure_state(history: History, index: int = -1) -> Measures:
-    """Metrics of one state of a run.
+def measure_state(
+    history: History,
+    index: int = -1,
+    *,
+    closing_radius: float | None = None,
+    gyrus_prominence: float | None = None,
+) -> Measures:
+    """Metrics of one state of a run, also with other lengths than those it was first measured with.
 
     Parameters
     ----------
@@ -29,22 +37,38 @@ def measure_state(history: History, index: int = -1) -> Measures:
         The run.
     index : int
         State; negative indices count from the end.
+    closing_radius : float, optional
+        Radius of the morphological closing [mm], > 0; the configuration's own by default.
+    gyrus_prominence : float, optional
+        Smallest prominence of a gyrus [mm], > 0; the configuration's own by default.
 
     Returns
     -------
     Measures
-        Every metric, by the configuration's own closing radius, prominence and samples.
+        Every metric. Nothing that is stored changes.
+
+    Raises
+    ------
+    ConfigError
+        If a length is not positive.
+    HistoryError
+        If there is no such state.
     """
     chosen = history.config.metrics
-    x = history.points(index)
-    return measure(
-        x[history.mesh.contour],
-        x[history.mesh.interface],
-        chosen.closing_radius,
-        chosen.gyrus_prominence,
-        chosen.samples,
-        history.mesh.period,
+    lengths = (
+        chosen.closing_radius if closing_radius is None else closing_radius,
+        chosen.gyrus_prominence if gyrus_prominence is None else gyrus_prominence,
     )
+    return _measured(history, index, *lengths)
+
+
+def _measured(
+    history: History, index: int, closing_radius: float, gyrus_prominence: float, *, earlier: bool = False
+) -> Measures:
+    x = history.points(index)
+    lines = x[history.mesh.contour], x[history.mesh.interface]
+    samples, period = history.config.metrics.samples, history.mesh.period
+    return measure_valid(*lines, closing_radius, gyrus_prominence, samples, period, earlier=earlier)
 
 
 def volume_extremes(history: History, index: int = -1) -> tuple[float, float]:
@@ -56,15 +80,53 @@ def volume_extremes(history: History, index: int = -1) -> tuple[float, float]:
     return float(J.min()), float((J / J_g).min())
 
 
-def metrics_rows(history: History) -> list[dict[str, Any]]:
-    """One row of flat metrics per state, as in ``metrics.csv``."""
+def metrics_rows(
+    history: History,
+    states: Sequence[int] | None = None,
+    *,
+    closing_radius: float | None = None,
+    gyrus_prominence: float | None = None,
+) -> list[dict[str, Any]]:
+    """One row of flat metrics per state, as in ``metrics.csv``.
+
+    Parameters
+    ----------
+    history : History
+        The run.
+    states : sequence of int, optional
+        States, counted from 0; all by default.
+    closing_radius, gyrus_prominence : float, optional
+        Lengths to measure with [mm], as in `measure_state`.
+
+    Returns
+    -------
+    list of dict
+        Values by the names of the columns.
+    """
+    lengths = {"closing_radius": closing_radius, "gyrus_prominence": gyrus_prominence}
+    return _rows(history, states, lambda index: measure_state(history, index, **lengths))
+
+
+def earlier_rows(history: History) -> list[dict[str, Any]]:
+    """`metrics_rows` by the rules of measuring of earlier runs, see `metrics.measure.measure_valid`."""
+    return _rows(history, None, lambda index: _earlier(history, index))
+
+
+def _earlier(history: History, index: int = -1) -> Measures:
+    chosen = history.config.metrics
+    return _measured(history, index, chosen.closing_radius, chosen.gyrus_prominence, earlier=True)
+
+
+def _rows(
+    history: History, states: Sequence[int] | None, measured: Callable[[int], Measures]
+) -> list[dict[str, Any]]:
     times, fractions, residuals = history.growth_times, history.fractions, history.residuals
     work = {
         name: history.journal.column(name) for name in ("newton_iterations", "factorizations", "analyses")
     }
     rows = []
-    for index in range(len(history)):
-        measures, (min_J, min_J_elastic) = measure_state(history, index), volume_extremes(history, index)
+    for index in range(len(history)) if states is None else states:
+        measures, (min_J, min_J_elastic) = measured(index), volume_extremes(history, index)
         rows.append(
             {
                 "increment": index,
@@ -98,7 +160,15 @@ def summarise(history: History) -> dict[str, Any]:
     dict
         Plain values under the names of ``summary.json``.
     """
-    measures = measure_state(history)
+    return _summary(history, measure_state(history))
+
+
+def earlier_summary(history: History) -> dict[str, Any]:
+    """`summarise` by the rules of measuring of earlier runs."""
+    return _summary(history, _earlier(history))
+
+
+def _summary(history: History, measures: Measures) -> dict[str, Any]:
     min_J, min_J_elastic = volume_extremes(history)
     stats, visible = history.stats, visible_time(history)
     summary: dict[str, Any] = _without_infinities(
@@ -192,9 +262,16 @@ def _stability_note(history: History, n_gyri: int) -> str:
     return " ".join(sentences)
 
 
-def write_metrics(history: History, path: Path) -> None:
-    """Write ``metrics.csv``, one row per state, by atomic rename."""
-    rows = metrics_rows(history)
+def write_metrics(
+    history: History,
+    path: Path,
+    states: Sequence[int] | None = None,
+    *,
+    closing_radius: float | None = None,
+    gyrus_prominence: float | None = None,
+) -> None:
+    """Write ``metrics.csv``, one row per state, by atomic rename; parameters as in `metrics_rows`."""
+    rows = metrics_rows(history, states, closing_radius=closing_radius, gyrus_prominence=gyrus_prominence)
     partial = fresh(path.with_suffix(".partial"))
     with partial.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, fieldnames=list(rows[0]), lineterminator="\n")

@@ -9,7 +9,6 @@ from gyrify.metrics.folds import (
     fold_wavelength,
     low_mode_shape,
     periodic_extrema,
-    sulcal_depth,
 )
 from gyrify.metrics.gap import min_gap
 from gyrify.metrics.gyri import GyrusShapes, gyrus_shapes
@@ -17,6 +16,7 @@ from gyrify.metrics.gyrification import gyrification_index
 from gyrify.metrics.measure import measure
 from gyrify.metrics.measures import Measures
 from gyrify.metrics.sharpness import fold_sharpness
+from gyrify.metrics.sulci import sulcal_depth
 from gyrify.metrics.thickness import cortical_thickness
 
 __all__ = [

@@ -87,7 +87,7 @@ def settings(config: Config) -> list[dict[str, Any]]:
             "key": row.key,
             "value": plain(row.value),
             "unit": row.unit,
-            "changed": row.default is not None and row.value != row.default,
+            "changed": row.is_changed,
             "about": row.doc,
             "source": row.source,
         }
