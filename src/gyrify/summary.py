@@ -6,6 +6,7 @@ import csv
 import json
 import math
 import os
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -13,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from gyrify.config import Config
+from gyrify.config.run_sections import Metrics
 from gyrify.metrics import Measures
 from gyrify.metrics.measure import measure_valid
 from gyrify.onset.visible import visible_time
@@ -20,6 +23,7 @@ from gyrify.solve.stability import StabilityChange
 from gyrify.store.files import fresh
 from gyrify.store.history import History
 from gyrify.validity import config_warnings, run_warnings
+from gyrify.validity.lengths import check_lengths
 
 
 def measure_state(
@@ -50,25 +54,40 @@ def measure_state(
     Raises
     ------
     ConfigError
-        If a length is not positive.
+        If a length is out of range.
     HistoryError
         If there is no such state.
+
+    Warns
+    -----
+    UserWarning
+        If a length that is given does not fit the body.
     """
-    chosen = history.config.metrics
-    lengths = (
-        chosen.closing_radius if closing_radius is None else closing_radius,
-        chosen.gyrus_prominence if gyrus_prominence is None else gyrus_prominence,
-    )
-    return _measured(history, index, *lengths)
+    config = measured_with(history.config, closing_radius, gyrus_prominence)
+    if config is not history.config:
+        for sentence in check_lengths(config):
+            warnings.warn(sentence, UserWarning, stacklevel=2)
+    return _measured(history, index, config.metrics)
 
 
-def _measured(
-    history: History, index: int, closing_radius: float, gyrus_prominence: float, *, earlier: bool = False
-) -> Measures:
+def measured_with(config: Config, closing_radius: float | None, gyrus_prominence: float | None) -> Config:
+    """Return the configuration with other lengths of measuring [mm], where they are given."""
+    lengths = {"metrics.closing_radius": closing_radius, "metrics.gyrus_prominence": gyrus_prominence}
+    given = {key: float(length) for key, length in lengths.items() if length is not None}
+    return config.with_overrides(given) if given else config
+
+
+def _measured(history: History, index: int, chosen: Metrics, *, earlier: bool = False) -> Measures:
     x = history.points(index)
-    lines = x[history.mesh.contour], x[history.mesh.interface]
-    samples, period = history.config.metrics.samples, history.mesh.period
-    return measure_valid(*lines, closing_radius, gyrus_prominence, samples, period, earlier=earlier)
+    return measure_valid(
+        x[history.mesh.contour],
+        x[history.mesh.interface],
+        chosen.closing_radius,
+        chosen.gyrus_prominence,
+        chosen.samples,
+        history.mesh.period,
+        earlier=earlier,
+    )
 
 
 def volume_extremes(history: History, index: int = -1) -> tuple[float, float]:
@@ -103,8 +122,8 @@ def metrics_rows(
     list of dict
         Values by the names of the columns.
     """
-    lengths = {"closing_radius": closing_radius, "gyrus_prominence": gyrus_prominence}
-    return _rows(history, states, lambda index: measure_state(history, index, **lengths))
+    chosen = measured_with(history.config, closing_radius, gyrus_prominence).metrics
+    return _rows(history, states, lambda index: _measured(history, index, chosen))
 
 
 def earlier_rows(history: History) -> list[dict[str, Any]]:
@@ -113,8 +132,7 @@ def earlier_rows(history: History) -> list[dict[str, Any]]:
 
 
 def _earlier(history: History, index: int = -1) -> Measures:
-    chosen = history.config.metrics
-    return _measured(history, index, chosen.closing_radius, chosen.gyrus_prominence, earlier=True)
+    return _measured(history, index, history.config.metrics, earlier=True)
 
 
 def _rows(

@@ -22,7 +22,7 @@ from gyrify.metrics.contour import (
     require_positive,
     ring_vertices,
 )
-from gyrify.metrics.order import notice_unfit, ordered_contour
+from gyrify.metrics.order import notice_crossing, notice_unfit, ordered_contour
 
 Definition = Literal["hull", "closing", "exposed"]
 
@@ -83,6 +83,7 @@ def gyrification_index(
         )
     require_positive("closing_radius", closing_radius)
     vertices = ordered_contour(contour)
+    notice_crossing(vertices)
     if definition != "hull":
         notice_unfit(vertices, closing_radius)
     return index_of(vertices, definition, closing_radius)

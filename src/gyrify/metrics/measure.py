@@ -67,8 +67,7 @@ def measure(
     Warns
     -----
     UserWarning
-        If the contour crosses itself (``self_intersecting`` says so too), or the closing radius is larger
-        than the body or much smaller than its edges.
+        If the closing radius is larger than the body or much smaller than its edges.
     """
     require_positive("closing_radius", closing_radius)
     is_closed = period is None

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.spatial import cKDTree
 
 from gyrify.errors import MeshError
-from gyrify.metrics.contour import FloatArray, as_contour, edge_lengths, self_intersecting
+from gyrify.metrics.contour import FloatArray, as_contour, edge_lengths
 
 # Points in order are about as far from the next one as from the nearest one; in any other order much farther,
 # and the whole is many times longer than its convex hull. Walls of sulci that overlap are neither.
@@ -54,22 +54,23 @@ def ordered_contour(points: ArrayLike, name: str = "The contour", *, closed: boo
     _require_distinct(vertices, name)
     if closed and _is_flat(vertices):
         raise MeshError(f"{name} encloses nothing: all {len(vertices)} points lie on a line.", _ADVICE)
+    line = shapely.linearrings(vertices) if closed else shapely.linestrings(vertices)
+    if line.is_simple:
+        return vertices
     edges = edge_lengths(vertices) if closed else np.hypot(*np.diff(vertices, axis=0).T)
-    is_crossing = (
-        not shapely.linearrings(vertices).is_simple if closed else not shapely.linestrings(vertices).is_simple
-    )
-    if is_crossing and (_is_unordered(vertices, edges) or (closed and _turns(vertices) > 1)):
+    if _is_unordered(vertices, edges):
         raise MeshError(
-            f"{name} is not in order: its edges jump across it (the median edge is "
-            f"{float(np.median(edges)):.3g} mm long, the median distance to the nearest point "
-            f"{_nearest(vertices):.3g} mm), or it goes round more than once.",
+            f"{name} is not in order: it crosses itself, and points that follow each other lie up to "
+            f"{float(edges.max()):.3g} mm apart, while the nearest point is {_nearest(vertices):.3g} mm off.",
             _ADVICE,
         )
+    if closed and (rounds := _rounds(vertices)) > 1:
+        raise MeshError(f"{name} goes round {rounds} times, and a contour goes round once.", _ADVICE)
     return vertices
 
 
 def notice_unfit(vertices: FloatArray, closing_radius: float) -> None:
-    """Warn of what makes an index a number about something else than the folds of a contour.
+    """Warn of a radius that makes an index a number about something else than the folds of a contour.
 
     Parameters
     ----------
@@ -80,8 +81,6 @@ def notice_unfit(vertices: FloatArray, closing_radius: float) -> None:
     """
     edges = edge_lengths(vertices)
     size = float(edges.sum()) / (2 * math.pi)
-    if self_intersecting(vertices):
-        _notice("The contour crosses itself: its index is a number about an impossible state.")
     if closing_radius > size:
         _notice(
             f"closing_radius = {closing_radius:g} mm is larger than the whole body (mean radius about "
@@ -94,6 +93,12 @@ def notice_unfit(vertices: FloatArray, closing_radius: float) -> None:
             f"(at least {float(edges.min()):.3g} mm): no sulcus is bridged. Give positions in mm, or a "
             f"radius in the unit of the contour; about {size / 4:.2g} sees sulci."
         )
+
+
+def notice_crossing(vertices: FloatArray) -> None:
+    """Warn of a contour that crosses itself, where what is returned does not say so."""
+    if not shapely.linearrings(vertices).is_simple:
+        _notice("The contour crosses itself: its index is a number about an impossible state.")
 
 
 def _notice(text: str) -> None:
@@ -137,8 +142,8 @@ def _nearest(vertices: FloatArray) -> float:
     return float(np.median(apart[:, 1]))
 
 
-def _turns(vertices: FloatArray) -> int:
-    """How many times the direction of a closed contour turns round, without sign."""
+def _rounds(vertices: FloatArray) -> int:
+    """How many times a closed contour goes round the mean of its points, in either direction."""
     plane = vertices[:, 0] + 1j * vertices[:, 1]
-    edge = np.roll(plane, -1) - plane
-    return abs(round(float(np.angle(edge * np.conj(np.roll(edge, 1))).sum()) / (2 * math.pi)))
+    ray = plane - plane.mean()
+    return abs(round(float(np.angle(np.roll(ray, -1) * np.conj(ray)).sum()) / (2 * math.pi)))

@@ -1,4 +1,4 @@
-"""Ranges of tissue and brains, with their sources: legal values that lie outside are told by this one table."""
+"""Ranges of tissue and brains, with their sources: what legal values are judged by, in one table."""
 
 from __future__ import annotations
 
@@ -193,8 +193,8 @@ RANGES: Final[tuple[Range, ...]] = (
         0.0,
         3.0,
         "",
-        "1.71 from brain volumes, and 1 in the model, in Wang 2019; 0.83 along the surface in Tallinen et al. "
-        "2016",
+        "1.71 from brain volumes, and 1 in the model, in Wang 2019; 0.83 along the surface in Tallinen et "
+        "al. 2016",
         "It is growth.rate × growth.duration, or exp of it less 1 where growth is exponential: lower one.",
         growth_strain,
     ),
