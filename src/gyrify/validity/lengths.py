@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from gyrify.config import Config
 
 # Points of the contour that a disc must span to bridge what they resolve.
-_SPACINGS: Final = 3.0
+_SPACINGS: Final = 2.0
 # Bumps this much lower than the cortex is thick are jitter of the nodes and rounding.
 _FLAT: Final = 0.01
 
@@ -38,7 +38,8 @@ def _radius(config: Config) -> list[str]:
     if radius < min(least, fitting):
         return [
             f"metrics.closing_radius = {radius:.4g} mm is less than {_SPACINGS:g} spacings of the contour's "
-            f"points, {least:.4g} mm: its disc enters every sulcus, and GI closing stays near 1. {advice}"
+            f"points, {least:.4g} mm: its disc enters sulci that the mesh just resolves, "
+            f"and GI closing falls towards 1. {advice}"
         ]
     return []
 

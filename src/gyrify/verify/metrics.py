@@ -56,7 +56,10 @@ def _by_earlier_rules(check: Check, stored: Any, found: Any, scale: float) -> Ch
     earlier = _compare(check.name, stored, found, scale)
     if not earlier.passed:
         return check
-    text = "Equals what the states give by the earlier rules, which count bumps without sulci as gyri."
+    text = (
+        "Equals what the states give by the earlier rules of measuring: bumps without sulci count as gyri, "
+        "and GI closing may exceed GI hull. `gyrify export --format metrics` measures again."
+    )
     return replace(earlier, sentence=text)
 
 
