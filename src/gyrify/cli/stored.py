@@ -104,9 +104,9 @@ def _lengths(format: str, **texts: str | None) -> dict[str, float]:
 
 def _measured_again(history: History, path: Path, index: int | None, lengths: dict[str, float]) -> Path:
     """Write the table of metrics of one state, or of every one; the folder keeps its own numbers."""
+    from gyrify.measuring import measured_with, write_metrics
     from gyrify.store.export import stored_states
     from gyrify.store.faults import storage_faults
-    from gyrify.summary import measured_with, write_metrics
     from gyrify.validity.lengths import check_lengths
 
     if lengths:

@@ -10,9 +10,10 @@ from typing import Any, Final
 
 from gyrify.config.words import shorten
 from gyrify.errors import HistoryError
+from gyrify.measuring import earlier_rows
 from gyrify.store.derived import read_metrics
 from gyrify.store.history import History
-from gyrify.summary import earlier_rows, earlier_summary, summarise
+from gyrify.summary import earlier_summary, summarise
 from gyrify.verify.result import Check
 from gyrify.versions import versions
 
@@ -67,7 +68,7 @@ def _comparable(
     history: History, stored: dict[str, Any], found: dict[str, Any]
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Both summaries, but for sentences and keys of another version of gyrify."""
-    if history.versions.get("gyrify") == versions()["gyrify"] and "warnings" in stored:
+    if history.versions.get("gyrify") == versions()["gyrify"] and stored.keys() >= LATER_KEYS:
         return stored, found
     left_out = {"warnings", *(LATER_KEYS - stored.keys())}
     return tuple({k: v for k, v in summary.items() if k not in left_out} for summary in (stored, found))  # type: ignore[return-value]
