@@ -19,6 +19,8 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 QUARTER_SEGMENTS = 32
 # Radius over that of a circle of the body's outline, above which closing and hull differ by less than 1e-6.
 LARGEST_RADIUS = 1000.0
+# The same, above which the hull is drawn: an erosion smooths what is smaller than a hundredth of the radius.
+WIDEST_DRAWN = 100.0
 
 # Entries of a dense distance matrix handled at once: the temporaries stay in the cache.
 BLOCK = 16_000
@@ -144,33 +146,13 @@ def _segments(polygon: shapely.Polygon, radius: float) -> int:
     return math.ceil(QUARTER_SEGMENTS * math.sqrt(max(1.0, radius / mean_radius(polygon))))
 
 
-def closing_outline(contour: ArrayLike, closing_radius: float = 10.0) -> FloatArray:
-    """Outline of the morphological closing of the tissue: sulci bridged by arcs of the closing radius.
-
-    Parameters
-    ----------
-    contour : (n, 2) array_like
-        Vertices of the closed contour in order [mm].
-    closing_radius : float
-        Radius of the disc that rolls around the tissue [mm], > 0.
-
-    Returns
-    -------
-    (m, 2) float array
-        Vertices of the outline [mm], the first one not repeated.
-
-    Raises
-    ------
-    MeshError
-        If the contour is malformed.
-    ConfigError
-        If the radius is not positive.
-    """
-    require_positive("closing_radius", closing_radius)
-    tissue = filled(as_contour(contour))
-    radius = fitting_radius(tissue, closing_radius)
-    dilated = shapely.Polygon(offset_outline(tissue, radius))
-    closed = dilated.buffer(-radius, quad_segs=_segments(tissue, radius))
+def closing_of(vertices: FloatArray, closing_radius: float) -> FloatArray:
+    """`closing_outline` of a contour that is known to be one, such as that of a stored state."""
+    tissue = filled(vertices)
+    if closing_radius > WIDEST_DRAWN * mean_radius(tissue):
+        return ring_vertices(tissue.convex_hull.exterior)
+    dilated = shapely.Polygon(offset_outline(tissue, closing_radius))
+    closed = dilated.buffer(-closing_radius, quad_segs=_segments(tissue, closing_radius))
     return ring_vertices(_largest(closed).exterior)
 
 

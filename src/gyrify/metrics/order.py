@@ -18,9 +18,9 @@ from gyrify.metrics.contour import FloatArray, as_contour, edge_lengths
 # and the whole is many times longer than its convex hull. Walls of sulci that overlap are neither.
 _MEDIAN_JUMP: Final = 5.0
 _LONGEST: Final = 3.0
-# A jump: an edge this many times longer than the median one. So large a share of the edges may be some.
+# A jump: an edge this many times longer than the median one. Points out of their order make at least two.
 _JUMP: Final = 10.0
-_JUMPS_ALLOWED: Final = 0.02
+_JUMPS: Final = 2
 # Least width over length, squared: below it, points lie on a line.
 _FLAT: Final = 1e-20
 # Edges that are all this many times longer than the radius: what the disc sees are the corners.
@@ -130,7 +130,7 @@ def _is_flat(vertices: FloatArray) -> bool:
 def _is_unordered(vertices: FloatArray, edges: FloatArray) -> bool:
     """Whether consecutive points lie much farther apart than points in order do."""
     median = float(np.median(edges))
-    if np.count_nonzero(edges > _JUMP * median) > max(2.0, _JUMPS_ALLOWED * len(edges)):
+    if np.count_nonzero(edges > _JUMP * median) >= _JUMPS:
         return True
     hull = float(shapely.multipoints(vertices).convex_hull.length)
     return float(edges.sum()) > _LONGEST * hull and median > _MEDIAN_JUMP * _nearest(vertices)

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from gyrify.metrics.contour import (
     FloatArray,
     as_points,
+    closing_of,
     distance_to_line,
     filled,
     fitting_radius,
@@ -76,3 +77,29 @@ def sulcal_depth(points: ArrayLike, contour: ArrayLike, closing_radius: float = 
 def depth_below(points: FloatArray, offset: shapely.LinearRing, radius: float) -> FloatArray:
     """`sulcal_depth` from the offset outline: the closing's outline lies one radius inside it."""
     return np.maximum(distance_to_line(points, ring_vertices(offset)) - radius, 0.0)
+
+
+def closing_outline(contour: ArrayLike, closing_radius: float = 10.0) -> FloatArray:
+    """Outline of the morphological closing of the tissue: sulci bridged by arcs of the closing radius.
+
+    Parameters
+    ----------
+    contour : (n, 2) array_like
+        Vertices of the closed contour in order [mm].
+    closing_radius : float
+        Radius of the disc that rolls around the tissue [mm], > 0.
+
+    Returns
+    -------
+    (m, 2) float array
+        Vertices of the outline [mm], the first one not repeated.
+
+    Raises
+    ------
+    MeshError
+        If the contour is malformed.
+    ConfigError
+        If the radius is not positive.
+    """
+    require_positive("closing_radius", closing_radius)
+    return closing_of(ordered_contour(contour), closing_radius)
