@@ -38,6 +38,7 @@ def test_the_closing_lies_between_contour_and_hull(shape: np.ndarray, radius: fl
     found = measure_valid(shape, 0.95 * shape, radius, 0.3, 2000, None)
     assert 1.0 - 1e-4 <= found.gi_closing <= found.gi_hull
     assert found.gi_closing == index_of(shape, "closing", radius)
+    assert found.gi_exposed > 0.995 * found.gi_closing
     assert 0.0 <= found.sulcal_depth_max <= 30.0
 
 

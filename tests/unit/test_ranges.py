@@ -13,9 +13,9 @@ from gyrify.config import Config, preset_names
 from gyrify.meshing import build_mesh
 from gyrify.metrics.contour import edge_lengths
 from gyrify.paper.cases import all_cases
-from gyrify.simulation import simulate
+from gyrify.store import History
 from gyrify.summary import summarise
-from gyrify.validity import config_warnings
+from gyrify.validity import config_warnings, run_warnings
 from gyrify.validity.ranges import RANGES, contour_spacing, table
 
 PAGE = Path(__file__).parents[2] / "docs" / "limits.md"
@@ -149,23 +149,15 @@ def test_config_check_and_run_say_the_same(tiny: Config, tmp_path: Path, capsys:
     assert all(f"Warning: {text}" in captured.err for text in checked)
 
 
-def test_dents_that_the_disc_enters_are_told() -> None:
-    """Soon after folding begins there are gyri, but a small disc follows every dent."""
-    config = Config().replace(
-        **{
-            "mesh.n_around": 120,
-            "mesh.n_layers": 10,
-            "mesh.n_cortex_layers": 4,
-            "growth.rate": 0.00155,
-            "solver.increments": 31,
-            "stability.detect": False,
-            "metrics.closing_radius": 3.0,
-        }
-    )
-    summary = summarise(simulate(config))
-    assert summary["n_gyri"] == 16
-    assert summary["sulcal_depth_mm"]["max"] < 0.03
-    assert any("so wide that the disc of 3 mm enters them" in text for text in summary["warnings"])
+def test_dents_that_the_disc_enters_are_told(folded: History) -> None:
+    summary = summarise(folded)
+    says = f"{summary['n_gyri']} gyri are counted, but the deepest sulcus measures 0.01 mm"
+    shallow = summary | {"sulcal_depth_mm": {"max": 0.01, "mean": 0.005}}
+    assert summary["n_gyri"] > 0
+    assert not any(says[:20] in text for text in run_warnings(folded, summary))
+    (told,) = [text for text in run_warnings(folded, shallow) if text.startswith(says)]
+    assert "so wide that the disc of 10 mm enters them" in told
+    assert not any("are counted" in text for text in run_warnings(folded, shallow | {"n_gyri": 0}))
 
 
 def test_the_page_lists_the_table() -> None:
