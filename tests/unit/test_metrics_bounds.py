@@ -12,7 +12,7 @@ from gyrify.errors import ConfigError, MeshError
 from gyrify.metrics import closing_outline, find_folds, measure
 from gyrify.metrics.contour import edge_lengths
 from gyrify.metrics.gyrification import at_least_hull, index_of
-from gyrify.metrics.measure import count_bumps, measure_valid
+from gyrify.metrics.measure import measure_valid
 from gyrify.store import History
 from gyrify.summary import measure_state, metrics_rows
 
@@ -101,8 +101,7 @@ def test_a_bump_without_a_sulcus_is_no_gyrus(k: int, amplitude: float, n_gyri: i
 def test_bumps_are_still_found_where_they_are_asked_for() -> None:
     shape = wavy(8, 0.9)
     assert measure(shape, 0.95 * shape).n_gyri == 0
-    assert find_folds(shape).n_gyri == count_bumps(shape, 0.3, 2000, None) == 8
-    assert count_bumps(strip(0.5), 0.3, 2000, PERIOD) == 3
+    assert find_folds(shape).n_gyri == 8
 
 
 def test_stored_states_are_measured_with_other_lengths(folded: History) -> None:

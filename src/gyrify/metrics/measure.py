@@ -23,7 +23,7 @@ from gyrify.metrics.gyrification import closing_length, exposed_length
 from gyrify.metrics.measures import Measures
 from gyrify.metrics.order import notice_unfit, ordered_contour
 from gyrify.metrics.sharpness import fold_sharpness
-from gyrify.metrics.strip import measure_strip, strip_folds
+from gyrify.metrics.strip import measure_strip
 from gyrify.metrics.sulci import depth_below
 from gyrify.metrics.thickness import thickness_at_folds
 
@@ -99,30 +99,6 @@ def measure_valid(
     if period is not None:
         return measure_strip(contour, interface, period, *lengths, earlier=earlier)
     return _measure_ring(contour, interface, *lengths, earlier)
-
-
-def count_bumps(contour: FloatArray, prominence: float, samples: int, period: float | None) -> int:
-    """Number of bumps of a contour, with sulci between them or not.
-
-    Parameters
-    ----------
-    contour : (n, 2) float array
-        Vertices [mm], as in `measure`.
-    prominence : float
-        Smallest prominence of a bump [mm], > 0.
-    samples : int
-        Points of the arc-length resampling, at least 16.
-    period : float or None
-        Period in x [mm] of a strip.
-
-    Returns
-    -------
-    int
-    """
-    if period is not None:
-        return strip_folds(contour, period, prominence, samples).n_gyri
-    shape = shape_of_hull(shapely.linestrings(contour).convex_hull)
-    return folds_about(shape, contour, prominence, samples).n_gyri
 
 
 def _measure_ring(

@@ -61,7 +61,7 @@ def measure_strip(
     radius = closing_radius if earlier else min(closing_radius, _LARGEST * period)
     closing, exposed, offset = _exposed_lengths(line, period, radius)
     closing = closing if earlier else at_least_hull(closing, period, radius)
-    folds = strip_folds(line, period, gyrus_prominence, samples)
+    folds = _folds(line, period, gyrus_prominence, samples)
     depth = depth_below(folds.fundus_points, offset, radius) if folds.n_gyri else np.zeros(1)
     crown, fundus = thickness_at_folds(folds, _repeated(interface, period, range(-1, 3)), closed=False)
     gyri = gyrus_shapes(folds, closed=False)
@@ -95,7 +95,7 @@ def _arc(line: FloatArray, period: float) -> FloatArray:
     return np.concatenate([[0.0], np.cumsum(np.hypot(edges[:, 0], edges[:, 1]))])
 
 
-def strip_folds(line: FloatArray, period: float, prominence: float, samples: int) -> Folds:
+def _folds(line: FloatArray, period: float, prominence: float, samples: int) -> Folds:
     """Return gyri and sulci: extrema of the height above the mean level."""
     arc = _arc(line, period)
     at = np.sort(np.concatenate([np.arange(samples) * (arc[-1] / samples), arc[1:-1]]))
