@@ -21,6 +21,7 @@ if TYPE_CHECKING:
         MeshError,
         SolveError,
     )
+    from gyrify.measuring import measure_state
     from gyrify.mesh import Mesh
     from gyrify.metrics import (
         Measures,
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
     from gyrify.simulation import Progress, resume, simulate
     from gyrify.store import History
     from gyrify.study import Study, read_results, run_study
-    from gyrify.summary import measure_state, summarise
+    from gyrify.summary import summarise
     from gyrify.threshold import Threshold, critical_growth
 
 __version__ = "0.1.0"
@@ -68,7 +69,7 @@ _HOMES = {
     "gyrification_index": "metrics",
     "length_increase": "metrics",
     "measure": "metrics",
-    "measure_state": "summary",
+    "measure_state": "measuring",
     "read_results": "study",
     "plot": "report.plot",
     "resume": "simulation",

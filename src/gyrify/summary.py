@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 import os
@@ -12,77 +11,29 @@ from typing import Any
 
 import numpy as np
 
-from gyrify.metrics import Measures, measure
+from gyrify.measuring import (
+    earlier_measures,
+    measure_state,
+    metrics_rows,
+    nodes_per_wavelength,
+    volume_extremes,
+    write_metrics,
+)
+from gyrify.metrics import Measures
 from gyrify.onset.visible import visible_time
 from gyrify.solve.stability import StabilityChange
 from gyrify.store.files import fresh
 from gyrify.store.history import History
 from gyrify.validity import config_warnings, run_warnings
 
-
-def measure_state(history: History, index: int = -1) -> Measures:
-    """Metrics of one state of a run.
-
-    Parameters
-    ----------
-    history : History
-        The run.
-    index : int
-        State; negative indices count from the end.
-
-    Returns
-    -------
-    Measures
-        Every metric, by the configuration's own closing radius, prominence and samples.
-    """
-    chosen = history.config.metrics
-    x = history.points(index)
-    return measure(
-        x[history.mesh.contour],
-        x[history.mesh.interface],
-        chosen.closing_radius,
-        chosen.gyrus_prominence,
-        chosen.samples,
-        history.mesh.period,
-    )
-
-
-def volume_extremes(history: History, index: int = -1) -> tuple[float, float]:
-    """Smallest J = det F and smallest J_e = J / J_g over the cells of a state [-]."""
-    problem = history.slice
-    number = index % len(history)
-    J = problem.volume_ratio(history.state_vector(number))
-    J_g = problem.volume_growth(float(history.growth_times[number]))
-    return float(J.min()), float((J / J_g).min())
-
-
-def metrics_rows(history: History) -> list[dict[str, Any]]:
-    """One row of flat metrics per state, as in ``metrics.csv``."""
-    times, fractions, residuals = history.growth_times, history.fractions, history.residuals
-    work = {
-        name: history.journal.column(name) for name in ("newton_iterations", "factorizations", "analyses")
-    }
-    rows = []
-    for index in range(len(history)):
-        measures, (min_J, min_J_elastic) = measure_state(history, index), volume_extremes(history, index)
-        rows.append(
-            {
-                "increment": index,
-                "growth_time": float(times[index]),
-                "growth_fraction": float(fractions[index]),
-                **measures.flat(),
-                "min_J": min_J,
-                "min_J_elastic": min_J_elastic,
-                "nodes_per_wavelength": _nodes_per_wavelength(history, measures),
-                "solver_residual": float(residuals[index]),
-                **{f"solver_{name}": column[index] for name, column in work.items()},
-            }
-        )
-    return rows
-
-
-def _nodes_per_wavelength(history: History, measures: Measures) -> float | None:
-    return history.mesh.contour.size / measures.n_gyri if measures.n_gyri else None
+__all__ = [
+    "measure_state",
+    "metrics_rows",
+    "summarise",
+    "volume_extremes",
+    "write_metrics",
+    "write_summary",
+]
 
 
 def summarise(history: History) -> dict[str, Any]:
@@ -98,7 +49,15 @@ def summarise(history: History) -> dict[str, Any]:
     dict
         Plain values under the names of ``summary.json``.
     """
-    measures = measure_state(history)
+    return _summary(history, measure_state(history))
+
+
+def earlier_summary(history: History) -> dict[str, Any]:
+    """`summarise` by the rules of measuring of earlier runs."""
+    return _summary(history, earlier_measures(history))
+
+
+def _summary(history: History, measures: Measures) -> dict[str, Any]:
     min_J, min_J_elastic = volume_extremes(history)
     stats, visible = history.stats, visible_time(history)
     summary: dict[str, Any] = _without_infinities(
@@ -112,7 +71,7 @@ def summarise(history: History) -> dict[str, Any]:
             **measures.as_dict(),
             "min_J": min_J,
             "min_J_elastic": min_J_elastic,
-            "nodes_per_wavelength": _nodes_per_wavelength(history, measures),
+            "nodes_per_wavelength": nodes_per_wavelength(history, measures),
             "onset": _onset(history, visible),
             "stability_changes": [_change(change) for change in history.stability_changes],
             "visible_growth_time": visible,
@@ -190,17 +149,6 @@ def _stability_note(history: History, n_gyri: int) -> str:
             f"{relaxed.n_gyri} gyri and a gyrification index of {relaxed.gi_closing:.3f}."
         )
     return " ".join(sentences)
-
-
-def write_metrics(history: History, path: Path) -> None:
-    """Write ``metrics.csv``, one row per state, by atomic rename."""
-    rows = metrics_rows(history)
-    partial = fresh(path.with_suffix(".partial"))
-    with partial.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, fieldnames=list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-    os.replace(partial, path)
 
 
 def write_summary(summary: dict[str, Any], path: Path) -> None:

@@ -24,6 +24,7 @@ NUMERICS: Final = (
     "onset",
     "run",
     "metrics",
+    "measuring",
     "summary",
     "validity",
 )

@@ -50,6 +50,8 @@ CHOICES = {
     "contact.barrier_stiffness": ["auto", 1e-3, 5e4],
 }
 
+# Keys that follow others when they are not given.
+FOLLOWERS = {"material.poisson_ratio_white", "metrics.closing_radius", "metrics.gyrus_prominence"}
 ABOVE_ZERO = 5e-324
 UP, DOWN = math.inf, -math.inf
 INSIDE_AND_OUTSIDE: dict[str, tuple[list[float], list[float]]] = {
@@ -128,8 +130,8 @@ def test_beyond_the_bound_is_refused(key: str, value: float) -> None:
     "value", [True, "3", "", None, math.nan, math.inf, -math.inf, [], {}, 1j, b"1", "1/0", 1 << 9999]
 )
 def test_what_is_no_number_is_refused(key: str, value: object) -> None:
-    if key == "material.poisson_ratio_white" and value is None:
-        return  # None is how Python says "the same"
+    if key in FOLLOWERS and value is None:
+        return  # None is how Python says "what it follows"
     with pytest.raises(ConfigError, match=key.replace(".", r"\.")):
         Config().replace(**{key: value})
 

@@ -245,5 +245,5 @@ def test_fields_of_a_state_that_does_not_exist_are_refused(folded: History):
 
 
 def test_only_the_fields_asked_for_are_computed(folded: History, monkeypatch):
-    monkeypatch.setattr("gyrify.store.fields.cortical_thickness", SimpleNamespace())
+    monkeypatch.setattr("gyrify.store.fields.distance_to_line", SimpleNamespace())
     assert list(fields(folded, -1, ["J"])) == ["J"]

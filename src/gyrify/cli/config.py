@@ -83,7 +83,7 @@ def schema(*, json: bool = True) -> None:  # noqa: ARG001
 def _print_plain(found: list[Row], resolved: Config) -> None:
     from gyrify.config.table import plain
 
-    shown = [(row.key, f"{plain(row.value)} {row.unit}".strip(), row.source) for row in found]
+    shown = [(row.key, f"{plain(row.value)} {row.unit}".strip(), row.origin) for row in found]
     key_width = max(len(key) for key, _, _ in shown)
     value_width = min(32, max(len(value) for _, value, _ in shown))
     for key, value, source in shown:
@@ -100,6 +100,6 @@ def _print_rich(found: list[Row], resolved: Config) -> None:
 
     table = Table("field", "value", "unit", "source", caption=f"config_hash {resolved.config_hash}")
     for row in found:
-        style = "" if row.value == row.default or row.default is None else "bold"
-        table.add_row(row.key, Text(plain(row.value), style), Text(row.unit), Text(row.source, "dim"))
+        style = "bold" if row.is_changed else ""
+        table.add_row(row.key, Text(plain(row.value), style), Text(row.unit), Text(row.origin, "dim"))
     Console().print(table)

@@ -135,6 +135,7 @@ def _print_family(console: object, family: Family) -> None:
     from rich.markup import escape
     from rich.table import Table
 
+    from gyrify.config.words import decimals
     from gyrify.convergence import METRICS
 
     assert isinstance(console, Console)
@@ -149,9 +150,10 @@ def _print_family(console: object, family: Family) -> None:
     styles = {True: "green", False: "yellow", None: "dim"}
     for metric in METRICS:
         verdict = family.verdicts[metric.key]
-        values = ["-" if value is None else f"{value:.{metric.digits}f}" for value in verdict.values]
+        digits = metric.digits if metric.is_count else decimals(verdict.values, metric.digits)
+        values = ["-" if value is None else f"{value:.{digits}f}" for value in verdict.values]
         order = "-" if verdict.order is None else f"{verdict.order:.1f}"
-        limit = "-" if verdict.limit is None else f"{verdict.limit:.{metric.digits}f}"
+        limit = "-" if verdict.limit is None else f"{verdict.limit:.{digits}f}"
         name = f"{metric.name} [{metric.unit}]" if metric.unit else metric.name
         table.add_row(
             escape(name), *values, order, limit, f"[{styles[verdict.converged]}]{verdict.sentence}[/]"

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from gyrify.cli.streams import complain
-from gyrify.metrics import gyrification_index
+from gyrify.metrics.gyrification import index_of
 
 if TYPE_CHECKING:
     from gyrify.simulation import Observer, Progress
@@ -35,7 +35,7 @@ def progress_observer(quiet: bool) -> Iterator[list[Observer]]:
 def _index(progress: Progress) -> float:
     mesh = progress.slice.mesh
     contour = mesh.points[mesh.contour] + progress.state.u[mesh.contour]
-    return gyrification_index(contour, closing_radius=progress.slice.config.metrics.closing_radius)
+    return index_of(contour, "closing", progress.slice.config.metrics.closing_radius)
 
 
 def _describe(progress: Progress) -> str:

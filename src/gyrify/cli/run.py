@@ -153,10 +153,13 @@ def _tell_end(summary: dict[str, Any], fraction: float, folder: Path, told: Sequ
 
 
 def _report(summary: dict[str, Any], folder: Path) -> None:
-    gi = summary["gi"]
+    from gyrify.config.words import decimals
+
+    gi, deepest = summary["gi"], summary["sulcal_depth_mm"]["max"]
+    sulci = f"sulci up to {deepest:.{decimals([deepest], 2)}f} mm deep" if summary["n_gyri"] else "no sulci"
     say(
         f"GI {gi['closing']:.3f} (closing of {gi['closing_radius_mm']:g} mm), {gi['hull']:.3f} (hull); "
-        f"{summary['n_gyri']} gyri; sulci up to {summary['sulcal_depth_mm']['max']:.2f} mm deep."
+        f"{summary['n_gyri']} gyri; {sulci}."
     )
     solver = summary["solver"]
     say(

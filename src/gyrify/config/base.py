@@ -5,24 +5,29 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic.config import JsonDict
 
 from gyrify.config.faults import config_error
 from gyrify.config.numbers import is_fraction, parse_number
 
 
-def setting(default: Any, doc: str, *, unit: str = "", source: str = "", **bounds: Any) -> Any:
+def setting(
+    default: Any, doc: str, *, unit: str = "", source: str = "", follows: str = "", **bounds: Any
+) -> Any:
     """Declare a field with its default, one line of doc, unit, published source and bounds.
 
     Parameters
     ----------
     default : object
-        The default value; None stands for a value taken from another field.
+        The default value; None stands for a value taken from other fields, as ``follows`` says.
     doc : str
         One line of documentation.
     unit : str, optional
         The unit; empty for words and pure numbers.
     source : str, optional
         Where the default was published.
+    follows : str, optional
+        What the value is when it is not given, in words.
     **bounds
         `gt`, `ge`, `lt`, `le`, as pydantic names them.
 
@@ -31,7 +36,10 @@ def setting(default: Any, doc: str, *, unit: str = "", source: str = "", **bound
     Any
         A pydantic field.
     """
-    return Field(default, description=doc, json_schema_extra={"unit": unit, "source": source}, **bounds)
+    extra: JsonDict = {"unit": unit, "source": source}
+    if follows:
+        extra["follows"] = follows
+    return Field(default, description=doc, json_schema_extra=extra, **bounds)
 
 
 if TYPE_CHECKING:

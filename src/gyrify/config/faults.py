@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from gyrify.config.numbers import is_fraction, parse_number
-from gyrify.config.words import allowed, choices, is_number, shorten, show
+from gyrify.config.words import allowed, choices, extra, is_number, shorten, show
 from gyrify.errors import ConfigError
 
 MAX_FAULTS: Final = 10
@@ -135,5 +135,5 @@ def _advice(field: FieldInfo, value: object) -> str:
 
 def _default(field: FieldInfo) -> str:
     if field.default is None:
-        return "Leave it out to take the same value as the field it follows."
+        return f"Leave it out to take {extra(field, 'follows')}."
     return f"The default is {show(field.default)}."

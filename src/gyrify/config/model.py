@@ -51,6 +51,12 @@ class Config(Section):
         return merge(preset_data(data["preset"]), own)
 
     @model_validator(mode="after")
+    def _fit_to_the_body(self) -> Config:
+        """Lengths of measuring that are not given scale with the body, also under later overrides."""
+        self.__dict__["metrics"] = self.metrics.scaled(self.geometry.scale)
+        return self
+
+    @model_validator(mode="after")
     def _check_together(self) -> Config:
         raise_faults(checks.faults(self))
         return self

@@ -10,6 +10,9 @@ from pydantic import Field, model_validator
 from gyrify.config.base import Section, setting
 
 PAPER: Final = "Wang 2019"
+# Of the standard slice: area inside its contour [mm²] and thickness of its cortex [mm].
+STANDARD_AREA: Final = 4069.0
+STANDARD_THICKNESS: Final = 1.5
 
 Stiffness = Annotated[float, Field(gt=0, le=1e15)]
 
@@ -21,7 +24,7 @@ class Geometry(Section):
         "ellipse", "Shape of the slice.", source=f"{PAPER}, Fig. 1"
     )
     area: float = setting(
-        4069.0,
+        STANDARD_AREA,
         "Area inside the outer contour, hole included; ellipse and circle only.",
         unit="mm²",
         source=f"{PAPER}, Fig. 1 (40.69 cm²)",
@@ -43,7 +46,7 @@ class Geometry(Section):
         le=0.9,
     )
     cortical_thickness: float = setting(
-        1.5,
+        STANDARD_THICKNESS,
         "Initial thickness T of the cortex, less than 0.95 of the narrowest wall.",
         unit="mm",
         source=f"{PAPER}, Mathematical Model",
@@ -76,6 +79,17 @@ class Geometry(Section):
     def drag_length(self) -> float:
         """Length R of the drag number: the mean radius, or the depth of a strip [mm]."""
         return self.depth if self.shape == "strip" else self.mean_radius
+
+    @property
+    def scale(self) -> float:
+        """Size of the body over that of the standard slice [-]: what lengths of measuring scale with.
+
+        Mean radii of an ellipse or circle. The folds of a strip know no length but the thickness of its
+        cortex: its depth and its period stand for a body without end.
+        """
+        if self.shape == "strip":
+            return self.cortical_thickness / STANDARD_THICKNESS
+        return math.sqrt(self.area) / math.sqrt(STANDARD_AREA)
 
     @property
     def narrowest_wall(self) -> float:
@@ -151,6 +165,7 @@ class Material(Section):
         None,
         "Poisson ratio of white matter; that of the cortex when not given.",
         source=f"{PAPER}, Results",
+        follows="material.poisson_ratio",
         gt=-1,
         lt=0.5,
     )

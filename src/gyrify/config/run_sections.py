@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Final, Literal
 
-from pydantic import BeforeValidator
+from pydantic import BeforeValidator, model_validator
 
 from gyrify.config.base import Section, setting
 
@@ -35,6 +35,14 @@ def _whole(value: Any) -> Any:
 
 Sign = Annotated[Literal[1, -1], BeforeValidator(_whole)]
 SchemaVersion = Annotated[Literal[1], BeforeValidator(_whole)]
+
+
+# Lengths of measuring that suit the standard slice [mm], and the bounds of those of other bodies.
+STANDARD_RADIUS: Final = 10.0
+STANDARD_PROMINENCE: Final = 0.3
+SHORTEST: Final = 1e-300
+LONGEST: Final = 1e5
+_SCALED: Final = {"closing_radius": STANDARD_RADIUS, "gyrus_prominence": STANDARD_PROMINENCE}
 
 
 class Solver(Section):
@@ -71,16 +79,51 @@ class Metrics(Section):
     """How folding is measured."""
 
     closing_radius: float = setting(
-        10.0,
-        "Radius of the morphological closing that outlines the exposed surface.",
+        None,
+        "Radius of the morphological closing that outlines the exposed surface; "
+        f"{STANDARD_RADIUS:g} mm times the scale of the body when not given.",
         unit="mm",
+        follows=f"{STANDARD_RADIUS:g} mm × scale of the body",
         gt=0,
-        le=1e5,
+        le=LONGEST,
     )
     gyrus_prominence: float = setting(
-        0.3, "Height from which an outward bump counts as a gyrus.", unit="mm", gt=0, le=1e5
+        None,
+        "Height from which an outward bump counts as a gyrus; "
+        f"{STANDARD_PROMINENCE:g} mm times the scale of the body when not given.",
+        unit="mm",
+        follows=f"{STANDARD_PROMINENCE:g} mm × scale of the body",
+        gt=0,
+        le=LONGEST,
     )
     samples: int = setting(2000, "Points of the contour resampled by arc length.", ge=100, le=1_000_000)
+
+    @model_validator(mode="after")
+    def _of_the_standard_slice(self) -> Metrics:
+        """State numbers even without a body; they do not count as given."""
+        for key in _SCALED:
+            if self.__dict__[key] is None:
+                self.__dict__[key] = _SCALED[key]
+        return self
+
+    def scaled(self, scale: float) -> Metrics:
+        """Return a copy whose lengths fit a body, where they are not given.
+
+        Parameters
+        ----------
+        scale : float
+            Size of the body over that of the standard slice [-].
+
+        Returns
+        -------
+        Metrics
+            Lengths that were not given still do not count as given, and follow the next body.
+        """
+        fitted = self.model_copy()
+        for key, standard in _SCALED.items():
+            if key not in self.model_fields_set:
+                fitted.__dict__[key] = min(max(standard * scale, SHORTEST), LONGEST)
+        return fitted
 
 
 class Output(Section):

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any
 
+from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from gyrify.config.faults import sections
@@ -29,6 +30,12 @@ class Row:
         Unit, range and one line of documentation.
     source : str
         Where the value was published; empty when it is not the published one.
+    follows : str
+        What the value is when it is not given, in words; empty where the default is a number or a word.
+    is_given : bool
+        Whether the value was stated, rather than left to its default.
+    is_changed : bool
+        Whether the value differs from what it is when it is not given.
     """
 
     key: str
@@ -38,19 +45,39 @@ class Row:
     allowed: str
     doc: str
     source: str
+    follows: str
+    is_given: bool
+    is_changed: bool
+
+    @property
+    def origin(self) -> str:
+        """Where the value comes from: a publication, or other values that it follows."""
+        return self.source or ("" if self.is_given else self.follows)
 
 
 def rows(config: Config) -> list[Row]:
     """Return one row for each setting, in the order of the file format."""
-    found = [_row("", name, config, Config.model_fields[name]) for name in Config.top_level()]
+    followed = config.replace(**dict.fromkeys(_followers()))
+    found = [_row("", name, config, followed, Config.model_fields[name]) for name in Config.top_level()]
     for section, kind in sections(Config).items():
-        group = getattr(config, section)
-        found += [_row(f"{section}.", name, group, field) for name, field in kind.model_fields.items()]
+        groups = getattr(config, section), getattr(followed, section)
+        found += [_row(f"{section}.", name, *groups, field) for name, field in kind.model_fields.items()]
     return found
 
 
-def _row(prefix: str, name: str, group: object, field: FieldInfo) -> Row:
+def _followers() -> list[str]:
+    """Dotted keys whose value follows others when it is not given."""
+    return [
+        f"{section}.{name}"
+        for section, kind in sections(Config).items()
+        for name, field in kind.model_fields.items()
+        if field.default is None
+    ]
+
+
+def _row(prefix: str, name: str, group: BaseModel, followed: BaseModel, field: FieldInfo) -> Row:
     value = getattr(group, name)
+    unset = getattr(followed, name) if field.default is None else field.default
     published = value == getattr(type(group)(), name)
     return Row(
         prefix + name,
@@ -60,6 +87,9 @@ def _row(prefix: str, name: str, group: object, field: FieldInfo) -> Row:
         allowed(field),
         field.description or "",
         extra(field, "source") if published else "",
+        extra(field, "follows"),
+        name in group.model_fields_set,
+        value != unset,
     )
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import types
 import typing
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, Final
 
 from pydantic.fields import FieldInfo
@@ -31,6 +32,25 @@ def show(value: object) -> str:
     if isinstance(value, int) and value.bit_length() > 128:
         return "a huge whole number"
     return shorten(repr(value)) if isinstance(value, int | float) else shorten(str(value))
+
+
+def decimals(values: Iterable[float | None], usual: int) -> int:
+    """Digits after the point that show numbers well, also those of a body much smaller than a brain.
+
+    Parameters
+    ----------
+    values : iterable of float or None
+        Numbers that are shown together.
+    usual : int
+        Digits for numbers of usual size.
+
+    Returns
+    -------
+    int
+        As many as are usual, or more where the largest number is below 0.1.
+    """
+    largest = max((abs(value) for value in values if value is not None and math.isfinite(value)), default=0.0)
+    return usual if largest == 0.0 or largest >= 0.1 else usual - math.floor(math.log10(largest))
 
 
 def extra(field: FieldInfo, name: str) -> str:

@@ -28,7 +28,8 @@ class Metric:
     is_count : bool
         Whether it is a whole number, which is converged only when it repeats.
     least : float
-        Size below which errors are relative to this instead of the value.
+        Size below which errors are relative to this instead of the value, in a body as large as the standard
+        slice.
     """
 
     key: str

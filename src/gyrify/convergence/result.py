@@ -80,12 +80,13 @@ class Family:
     @cached_property
     def verdicts(self) -> dict[str, Verdict]:
         """Verdict per metric, by the keys of `gyrify.convergence.METRICS`."""
+        scale = self.levels[0].config.geometry.scale if self.levels else 1.0
         return {
             metric.key: judge(
                 [level.metrics.get(metric.key) for level in self.levels],
                 self.tolerance,
                 is_count=metric.is_count,
-                least=metric.least,
+                least=metric.least * scale,
             )
             for metric in METRICS
         }

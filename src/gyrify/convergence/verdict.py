@@ -12,8 +12,8 @@ RULE: Final = (
     "to 4, 1.25 times the distance to the limit of Richardson's extrapolation; from three others, the "
     "largest difference among them; from two, three times their difference. A count has the largest "
     "difference among the two finest levels. Converged means an error of at most the tolerance, relative to "
-    "the finest value or, for depths, to 0.1 mm if that is more (a count: no difference). The finest level, "
-    "and the one before it, must be known."
+    "the finest value or, for depths, to 0.1 mm times the scale of the body if that is more (a count: no "
+    "difference). The finest level, and the one before it, must be known."
 )
 # Safety factors of the grid convergence index, with an order and without (Roache 1994).
 _SAFETY_WITH_ORDER: Final = 1.25

@@ -1,7 +1,7 @@
 """Metrics of a folded contour: plain functions of arrays of positions in mm."""
 
 from gyrify.metrics.calibration import growth_ratio_from_scaling, growth_ratio_from_volumes, length_increase
-from gyrify.metrics.contour import closing_outline, self_intersecting
+from gyrify.metrics.contour import self_intersecting
 from gyrify.metrics.folds import (
     Folds,
     LowModeShape,
@@ -9,7 +9,6 @@ from gyrify.metrics.folds import (
     fold_wavelength,
     low_mode_shape,
     periodic_extrema,
-    sulcal_depth,
 )
 from gyrify.metrics.gap import min_gap
 from gyrify.metrics.gyri import GyrusShapes, gyrus_shapes
@@ -17,6 +16,7 @@ from gyrify.metrics.gyrification import gyrification_index
 from gyrify.metrics.measure import measure
 from gyrify.metrics.measures import Measures
 from gyrify.metrics.sharpness import fold_sharpness
+from gyrify.metrics.sulci import closing_outline, sulcal_depth
 from gyrify.metrics.thickness import cortical_thickness
 
 __all__ = [

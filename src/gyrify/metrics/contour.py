@@ -14,8 +14,13 @@ from gyrify.errors import ConfigError, MeshError
 FloatArray = NDArray[np.float64]
 Scalar = TypeVar("Scalar", bound=np.generic)
 
-# Segments per quarter circle of an offset curve: its length is then true to 1e-4 of its arcs.
+# Segments per quarter circle of an offset curve: its length is then true to 1e-4 of its arcs. Discs larger
+# than the body get more, so that it is true to 1e-4 of the body.
 QUARTER_SEGMENTS = 32
+# Radius over that of a circle of the body's outline, above which closing and hull differ by less than 1e-6.
+LARGEST_RADIUS = 1000.0
+# The same, above which the hull is drawn: an erosion smooths what is smaller than a hundredth of the radius.
+WIDEST_DRAWN = 100.0
 
 # Entries of a dense distance matrix handled at once: the temporaries stay in the cache.
 BLOCK = 16_000
@@ -38,7 +43,10 @@ def as_contour(contour: ArrayLike) -> FloatArray:
     MeshError
         If it is not a list of at least three finite points of the plane.
     """
-    vertices = np.ascontiguousarray(contour, dtype=np.float64)
+    try:
+        vertices = np.ascontiguousarray(contour, dtype=np.float64)
+    except (TypeError, ValueError):
+        vertices = np.empty(0)
     if vertices.ndim == 2 and len(vertices) > 1 and np.array_equal(vertices[0], vertices[-1]):
         vertices = vertices[:-1]
     if vertices.ndim != 2 or vertices.shape[1] != 2 or len(vertices) < 3:
@@ -49,6 +57,23 @@ def as_contour(contour: ArrayLike) -> FloatArray:
     if not np.isfinite(vertices).all():
         raise MeshError("The contour has vertices that are not finite.", "Check the state it was taken from.")
     return vertices
+
+
+def as_points(points: ArrayLike) -> FloatArray:
+    """Return (k, 2) finite points of the plane [mm] as an array.
+
+    Raises
+    ------
+    MeshError
+        If they are none.
+    """
+    try:
+        found = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+    except (TypeError, ValueError):
+        found = np.full((1, 2), np.nan)
+    if not np.isfinite(found).all():
+        raise MeshError("The points are not finite points of the plane.", "Pass a (k, 2) array of numbers.")
+    return found
 
 
 def require_positive(name: str, value: float, unit: str = "mm") -> None:
@@ -92,36 +117,42 @@ def filled(contour: FloatArray) -> shapely.Polygon:
     return shapely.Polygon(_largest(shapely.union_all(faces.geoms)).exterior)
 
 
-def offset_outline(polygon: shapely.Polygon, radius: float) -> shapely.LinearRing:
-    """Return the outer boundary of everything within ``radius`` [mm] of the polygon."""
-    return polygon.buffer(radius, quad_segs=QUARTER_SEGMENTS).exterior
+def mean_radius(polygon: shapely.Polygon) -> float:
+    """Radius [mm] of the circle whose circumference is the length of the outline."""
+    return float(polygon.exterior.length) / (2 * math.pi)
 
 
-def closing_outline(contour: ArrayLike, closing_radius: float = 10.0) -> FloatArray:
-    """Outline of the morphological closing of the tissue: sulci bridged by arcs of the closing radius.
+def fitting_radius(polygon: shapely.Polygon, radius: float) -> float:
+    """Return the radius [mm]; one far larger than the body is cut, as its closing is the hull anyway."""
+    return min(radius, LARGEST_RADIUS * mean_radius(polygon))
 
-    Parameters
-    ----------
-    contour : (n, 2) array_like
-        Vertices of the closed contour in order [mm].
-    closing_radius : float
-        Radius of the disc that rolls around the tissue [mm], > 0.
 
-    Returns
-    -------
-    (m, 2) float array
-        Vertices of the outline [mm], the first one not repeated.
+def offset_outline(
+    polygon: shapely.Polygon, radius: float, segments: int | None = None
+) -> shapely.LinearRing:
+    """Return the outer boundary of everything within ``radius`` [mm] of the polygon.
 
-    Raises
-    ------
-    MeshError
-        If the contour is malformed.
-    ConfigError
-        If the radius is not positive.
+    The arcs have so many segments a quarter, by default as many as the length of the closing needs.
     """
-    require_positive("closing_radius", closing_radius)
-    dilated = shapely.Polygon(offset_outline(filled(as_contour(contour)), closing_radius))
-    closed = dilated.buffer(-closing_radius, quad_segs=QUARTER_SEGMENTS)
+    return polygon.buffer(radius, quad_segs=segments or _segments(polygon, radius)).exterior
+
+
+def _segments(polygon: shapely.Polygon, radius: float) -> int:
+    """Segments of a quarter circle.
+
+    The closing's outline is the difference of two lengths that grow with the radius: the chords of a disc
+    much larger than the body would miss more of the arcs than the body has of outline.
+    """
+    return math.ceil(QUARTER_SEGMENTS * math.sqrt(max(1.0, radius / mean_radius(polygon))))
+
+
+def closing_of(vertices: FloatArray, closing_radius: float) -> FloatArray:
+    """`closing_outline` of a contour that is known to be one, such as that of a stored state."""
+    tissue = filled(vertices)
+    if closing_radius > WIDEST_DRAWN * mean_radius(tissue):
+        return ring_vertices(tissue.convex_hull.exterior)
+    dilated = shapely.Polygon(offset_outline(tissue, closing_radius))
+    closed = dilated.buffer(-closing_radius, quad_segs=_segments(tissue, closing_radius))
     return ring_vertices(_largest(closed).exterior)
 
 

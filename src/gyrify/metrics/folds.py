@@ -11,16 +11,14 @@ from numpy.typing import ArrayLike, NDArray
 from gyrify.errors import ConfigError
 from gyrify.metrics.contour import (
     FloatArray,
-    as_contour,
-    distance_to_line,
-    filled,
     following,
-    offset_outline,
     require_positive,
     resample,
     ring_vertices,
 )
+from gyrify.metrics.order import ordered_contour
 from gyrify.metrics.peaks import prominent_maxima
+from gyrify.metrics.sulci import has_sulcus
 
 # Undulations with up to this many periods around the brain are its shape; folds are five or more.
 SHAPE_MODES = 4
@@ -103,7 +101,7 @@ class Folds:
 
 
 def find_folds(contour: ArrayLike, gyrus_prominence: float = 0.3, samples: int = 2000) -> Folds:
-    """Find the gyri and sulci of a closed contour.
+    """Find the bumps of a closed contour and the dents between them: its gyri and sulci, if it has any.
 
     Parameters
     ----------
@@ -128,11 +126,18 @@ def find_folds(contour: ArrayLike, gyrus_prominence: float = 0.3, samples: int =
     See Also
     --------
     low_mode_shape : what the displacement is measured from.
+    measure : counts them as gyri only if a sulcus lies below the convex hull by the prominence.
     periodic_extrema : the detection alone, for any periodic profile such as the surface of a strip.
     """
     require_detectable(gyrus_prominence, samples)
-    vertices = as_contour(contour)
+    vertices = ordered_contour(contour)
     return folds_about(low_mode_shape(vertices), vertices, gyrus_prominence, samples)
+
+
+def gyri_of(vertices: FloatArray, gyrus_prominence: float, samples: int) -> Folds:
+    """`find_folds` of a contour that is known to be one; none where nothing is a sulcus, as in `measure`."""
+    hull = shapely.linestrings(vertices).convex_hull
+    return folds_about(shape_of_hull(hull), vertices, gyrus_prominence, samples, hull)
 
 
 def require_detectable(gyrus_prominence: float, samples: int) -> None:
@@ -142,11 +147,19 @@ def require_detectable(gyrus_prominence: float, samples: int) -> None:
         raise ConfigError(f"samples = {samples} is out of range: it must be >= 16.", "The default is 2000.")
 
 
-def folds_about(shape: LowModeShape, contour: FloatArray, prominence: float, samples: int) -> Folds:
-    """`find_folds` about a shape that is known already."""
+def folds_about(
+    shape: LowModeShape,
+    contour: FloatArray,
+    prominence: float,
+    samples: int,
+    hull: shapely.Polygon | None = None,
+) -> Folds:
+    """`find_folds` about a shape that is known already; without a hull, bumps without sulci count too."""
     points = resample(contour, samples, keep_vertices=True)
     displacement = shape.displacement(points)
     crowns, fundi = periodic_extrema(displacement, prominence)
+    if hull is not None and not has_sulcus(points[fundi], hull, prominence):
+        crowns = fundi = np.empty(0, dtype=np.int64)
     return Folds(points, displacement, crowns, fundi)
 
 
@@ -171,7 +184,7 @@ def low_mode_shape(contour: ArrayLike) -> LowModeShape:
     MeshError
         If the contour is malformed.
     """
-    return shape_of_hull(shapely.linestrings(as_contour(contour)).convex_hull)
+    return shape_of_hull(shapely.linestrings(ordered_contour(contour)).convex_hull)
 
 
 def shape_of_hull(convex_hull: shapely.Polygon) -> LowModeShape:
@@ -200,43 +213,9 @@ def periodic_extrema(profile: FloatArray, prominence: float) -> tuple[NDArray[np
     maxima, minima : int arrays
         Ascending indices; as many of one as of the other, and alternating.
     """
-    # Twin crowns of exactly the same height would both stand out: an imperceptible slope ranks them.
+    # Of twin crowns of exactly the same height both would stand out: an imperceptible slope ranks them.
     ranked = profile + np.arange(len(profile)) * (_TIE * np.ptp(profile) / len(profile))
     return _periodic_maxima(ranked, prominence), _periodic_maxima(-ranked, prominence)
-
-
-def sulcal_depth(points: ArrayLike, contour: ArrayLike, closing_radius: float = 10.0) -> FloatArray:
-    """Depth of points below the outline of the closing.
-
-    Parameters
-    ----------
-    points : (k, 2) array_like
-        Points on or inside the outline [mm], such as `Folds.fundus_points`.
-    contour : (n, 2) array_like
-        Vertices of the closed contour in order [mm].
-    closing_radius : float
-        Radius of the closing [mm], > 0.
-
-    Returns
-    -------
-    (k,) float array
-        Shortest distance to the outline [mm]; 0 on it.
-
-    Raises
-    ------
-    ConfigError
-        If the radius is not positive.
-    MeshError
-        If the contour is malformed.
-    """
-    require_positive("closing_radius", closing_radius)
-    offset = offset_outline(filled(as_contour(contour)), closing_radius)
-    return depth_below(np.asarray(points, dtype=np.float64).reshape(-1, 2), offset, closing_radius)
-
-
-def depth_below(points: FloatArray, offset: shapely.LinearRing, radius: float) -> FloatArray:
-    """`sulcal_depth` from the offset outline: the closing's outline lies one radius inside it."""
-    return np.maximum(distance_to_line(points, ring_vertices(offset)) - radius, 0.0)
 
 
 def fold_wavelength(exposed_length: float, n_gyri: int) -> float:

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
-from gyrify.metrics.contour import BLOCK, FloatArray, as_contour, edge_lengths, following, self_intersecting
+from gyrify.metrics.contour import BLOCK, FloatArray, edge_lengths, following, self_intersecting
+from gyrify.metrics.order import ordered_contour
 
 # Two points are neighbours unless the way along the contour is this many times their distance. Every closed
 # curve has pairs at a ratio of π/2 or more (a circle reaches just that), so that a gap always exists.
@@ -43,9 +44,9 @@ def min_gap(contour: ArrayLike) -> float:
     Raises
     ------
     MeshError
-        If the contour is malformed.
+        If the contour is malformed, has a point twice or is not in order.
     """
-    vertices = as_contour(contour)
+    vertices = ordered_contour(contour)
     return 0.0 if self_intersecting(vertices) else simple_gap(vertices)
 
 

@@ -21,16 +21,22 @@ from gyrify.metrics.contour import (
     offset_outline,
     require_positive,
 )
-from gyrify.metrics.folds import Folds, depth_below, periodic_extrema
+from gyrify.metrics.folds import Folds, periodic_extrema
 from gyrify.metrics.gap import DETOUR
 from gyrify.metrics.gyri import gyrus_shapes
-from gyrify.metrics.gyrification import closing_length, exposed_length
+from gyrify.metrics.gyrification import at_least_hull, closing_length, exposed_length
 from gyrify.metrics.measures import Measures
 from gyrify.metrics.sharpness import fold_sharpness
+from gyrify.metrics.sulci import depth_below
 from gyrify.metrics.thickness import thickness_at_folds
 
 # Relative to the length of the contour, as in `gyrify.metrics.gap`.
 _ROUNDING = 1e-9
+# Radius over the period above which the closing is the level line on the highest crowns, to 1e-5 of it, and
+# so many periods a disc is tried on at most.
+_LARGEST = 100.0
+# A touch is judged to this many periods where the disc is larger.
+_WIDE = 10.0
 
 
 def measure_strip(
@@ -40,8 +46,10 @@ def measure_strip(
     closing_radius: float,
     gyrus_prominence: float,
     samples: int,
+    *,
+    earlier: bool = False,
 ) -> Measures:
-    """Measure one deformed state of a strip; parameters as in `gyrify.metrics.measure`.
+    """Measure one deformed state of a strip; parameters as in `gyrify.metrics.measure_valid`.
 
     Heights are measured from the mean level of the contour. The gap counts neighbours as in
     `gyrify.metrics.min_gap`, images included; a contour without folds has none, and it is infinite.
@@ -50,9 +58,11 @@ def measure_strip(
     line = _from_lowest(contour, period)
     crossing = not shapely.linestrings(_repeated(line, period, range(-1, 3))).is_simple
     length = float(_arc(line, period)[-1])
-    closing, exposed, offset = _exposed_lengths(line, period, closing_radius)
+    radius = closing_radius if earlier else min(closing_radius, _LARGEST * period)
+    closing, exposed, offset = _exposed_lengths(line, period, radius)
+    closing = closing if earlier else at_least_hull(closing, period, radius)
     folds = _folds(line, period, gyrus_prominence, samples)
-    depth = depth_below(folds.fundus_points, offset, closing_radius) if folds.n_gyri else np.zeros(1)
+    depth = depth_below(folds.fundus_points, offset, radius) if folds.n_gyri else np.zeros(1)
     crown, fundus = thickness_at_folds(folds, _repeated(interface, period, range(-1, 3)), closed=False)
     gyri = gyrus_shapes(folds, closed=False)
     return Measures(
@@ -114,12 +124,12 @@ def strip_closing_outline(contour: FloatArray, period: float, closing_radius: fl
     list of (m, 2) float arrays
         Vertices of each piece [mm].
     """
-    line = _from_lowest(contour, period)
-    body = _body(line, period, _count(line, period, closing_radius) + 4, closing_radius)
-    closed = offset_outline(body, closing_radius)
-    outline = shapely.Polygon(closed).buffer(-closing_radius, quad_segs=QUARTER_SEGMENTS).exterior
+    line, radius = _from_lowest(contour, period), min(closing_radius, _LARGEST * period)
+    body = _body(line, period, _count(line, period, radius) + 4, radius)
+    closed = offset_outline(body, radius, QUARTER_SEGMENTS)
+    outline = shapely.Polygon(closed).buffer(-radius, quad_segs=QUARTER_SEGMENTS).exterior
     margin, left = 0.1 * period, float(contour[0, 0])
-    below, above = float(line[0, 1]) - closing_radius, float(line[:, 1].max()) + closing_radius
+    below, above = float(line[0, 1]) - radius, float(line[:, 1].max()) + radius
     piece = shapely.clip_by_rect(outline, left - margin, below, left + period + margin, above)
     merged = shapely.line_merge(piece) if piece.geom_type == "MultiLineString" else piece
     return [shapely.get_coordinates(part) for part in shapely.get_parts(merged)]
@@ -140,9 +150,10 @@ def _exposed_lengths(
     """
     n = _count(line, period, radius)
     bodies = [_body(line, period, count, radius) for count in (n, n + 1)]
-    offsets = [offset_outline(body, radius) for body in bodies]
+    offsets = [offset_outline(body, radius, QUARTER_SEGMENTS) for body in bodies]
     closing = closing_length(offsets[1], radius) - closing_length(offsets[0], radius) - period
-    exposed = exposed_length(bodies[1], radius) - exposed_length(bodies[0], radius) - period
+    size = _WIDE * period
+    exposed = exposed_length(bodies[1], radius, size) - exposed_length(bodies[0], radius, size) - period
     return closing, exposed, offsets[1]
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gyrify.metrics.contour import FloatArray, as_contour, distance_to_line
+from gyrify.metrics.contour import FloatArray, as_points, distance_to_line
 from gyrify.metrics.folds import Folds
+from gyrify.metrics.order import ordered_contour
 
 # Where nothing is folded the thickness is averaged over about this many points along the contour.
 _SMOOTH_POINTS = 50
@@ -34,10 +35,10 @@ def cortical_thickness(
     Raises
     ------
     MeshError
-        If the contour or the interface is malformed.
+        If the contour or the interface is malformed, has a point twice or is not in order.
     """
-    points = as_contour(contour) if at is None else np.asarray(at, dtype=np.float64).reshape(-1, 2)
-    return distance_to_line(points, as_contour(interface))
+    line = ordered_contour(interface, "The interface")
+    return distance_to_line(ordered_contour(contour) if at is None else as_points(at), line)
 
 
 def thickness_at_folds(folds: Folds, interface: FloatArray, *, closed: bool = True) -> tuple[float, float]:

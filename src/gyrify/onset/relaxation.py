@@ -10,7 +10,8 @@ from typing import Final
 
 import numpy as np
 
-from gyrify.metrics import Measures, measure
+from gyrify.metrics import Measures
+from gyrify.metrics.measure import measure_valid
 from gyrify.model import Slice
 from gyrify.solve.newton import minimise
 from gyrify.solve.result import Result
@@ -97,7 +98,7 @@ def relax(
 def _measured(problem: Slice, u: FloatArray) -> Measures:
     mesh, metrics = problem.mesh, problem.config.metrics
     x = mesh.points + u[: mesh.n_points]
-    return measure(
+    return measure_valid(
         x[mesh.contour],
         x[mesh.interface],
         metrics.closing_radius,

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Final
 
 from gyrify.mesh import Mesh
 from gyrify.mesh.mesh import FloatArray
-from gyrify.metrics import gyrification_index, measure
+from gyrify.metrics.gyrification import index_of
+from gyrify.metrics.measure import measure_valid
 
 if TYPE_CHECKING:
     from gyrify.config.run_sections import Metrics
@@ -64,8 +65,8 @@ def visible_index(mesh: Mesh, points: FloatArray, metrics: Metrics, level: float
     """
     contour = points[mesh.contour]
     if mesh.period is None:
-        if gyrification_index(contour, "hull") <= level:
+        if index_of(contour, "hull", metrics.closing_radius) <= level:
             return 1.0
-        return gyrification_index(contour, closing_radius=metrics.closing_radius)
+        return index_of(contour, "closing", metrics.closing_radius)
     samples = (metrics.closing_radius, metrics.gyrus_prominence, metrics.samples)
-    return measure(contour, points[mesh.interface], *samples, mesh.period).gi_closing
+    return measure_valid(contour, points[mesh.interface], *samples, mesh.period).gi_closing

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gyrify.metrics import closing_outline
+from gyrify.metrics.contour import closing_of
 from gyrify.metrics.strip import strip_closing_outline
 
 FloatArray = NDArray[np.float64]
@@ -62,7 +62,7 @@ def closed_sheet(
     radius: float,
 ) -> Sheet:
     """Return a slice in the frame of its exposed outline."""
-    exposed = closing_outline(points[contour], radius)
+    exposed = closing_of(points[contour], radius)
     outer, inner = (np.concatenate([line, line[:1]]) for line in (points[contour], points[interface]))
     low, high = exposed.min(axis=0), exposed.max(axis=0)
     return Sheet(points, cells, region, outer, inner, [np.concatenate([exposed, exposed[:1]])], low, high)

@@ -70,7 +70,7 @@ def export(
             f"format = {format!r} is not an export format.", f"Choose one of {', '.join(get_args(Format))}."
         )
     chosen = tuple(history.config.output.fields if names is None else names)
-    states = _states(history, index)
+    states = stored_states(history, index)
     target = Path(path)
     with storage_faults(target.parent, str(target)):
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -81,7 +81,8 @@ def export(
         return (_write_xdmf if format == "xdmf" else _write_vtu)(history, target, states, chosen)
 
 
-def _states(history: History, index: int | None) -> list[int]:
+def stored_states(history: History, index: int | None) -> list[int]:
+    """Numbers of the states to write: one, or every one that ``output.every`` asks for."""
     if index is None:
         return written_states(len(history), history.config.output.every)
     number = index + len(history) if index < 0 else index

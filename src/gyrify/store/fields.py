@@ -20,7 +20,6 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from gyrify.config.run_sections import ALL_FIELDS, OutputField
-from gyrify.metrics import cortical_thickness
 from gyrify.metrics.contour import distance_to_line
 from gyrify.metrics.curvature import curvature
 from gyrify.model import Slice
@@ -266,7 +265,7 @@ class StateFields:
         mesh, shift = self._problem.mesh, self._shift
         interface = mesh.points[mesh.interface] + self._u[mesh.interface]
         if shift == 0.0:
-            return self._on_contour(cortical_thickness(self._contour, interface))
+            return self._on_contour(distance_to_line(self._contour, interface))
         line = np.concatenate([np.add(interface, [images * shift, 0.0]) for images in (-1, 0, 1)])
         return self._on_contour(distance_to_line(self._contour, line, closed=False))
 

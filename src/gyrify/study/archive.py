@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from gyrify.config.words import shorten
 from gyrify.errors import HistoryError
-from gyrify.metrics import gyrification_index
+from gyrify.metrics.gyrification import index_of
 from gyrify.store.files import fresh, read_facts, refuse_link
 from gyrify.store.history import History
 from gyrify.summary import measure_state
@@ -140,8 +140,8 @@ def _indices(history: History) -> tuple[FloatArray, FloatArray]:
         states = [measure_state(history, index) for index in range(len(history))]
         return np.array([s.gi_closing for s in states]), np.array([s.gi_hull for s in states])
     contours = [history.contour(index) for index in range(len(history))]
-    closing = [gyrification_index(contour, "closing", radius) for contour in contours]
-    return np.array(closing), np.array([gyrification_index(contour, "hull") for contour in contours])
+    closing = [index_of(contour, "closing", radius) for contour in contours]
+    return np.array(closing), np.array([index_of(contour, "hull", radius) for contour in contours])
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,8 @@ if TYPE_CHECKING:
 
 # Points of the contour that a fold needs to be resolved.
 POINTS_PER_FOLD: Final = 8.0
+# Depth below which a sulcus is not worth the name, over the prominence from which a bump is a gyrus.
+NEGLIGIBLE: Final = 0.1
 
 
 def run_warnings(history: History, summary: dict[str, Any]) -> list[str]:
@@ -61,9 +63,21 @@ def _symmetry(history: History, summary: dict[str, Any]) -> list[str]:
     ]
 
 
+def _dents(history: History, summary: dict[str, Any]) -> list[str]:
+    deepest, prominence = summary["sulcal_depth_mm"]["max"], history.config.metrics.gyrus_prominence
+    if summary["n_gyri"] == 0 or deepest >= NEGLIGIBLE * prominence:
+        return []
+    return [
+        f"{summary['n_gyri']} gyri are counted, but the deepest sulcus measures {deepest:.2g} mm: the dents "
+        f"between them are so wide that the disc of {summary['gi']['closing_radius_mm']:g} mm enters them. "
+        f"Go by GI hull ({summary['gi']['hull']:.4f}), or measure with a larger metrics.closing_radius."
+    ]
+
+
 CHECKS: Final[tuple[Callable[[History, dict[str, Any]], list[str]], ...]] = (
     _resolution,
     _crossing,
     _stability,
     _symmetry,
+    _dents,
 )

@@ -5,10 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
+from gyrify.validity.lengths import check_lengths
+from gyrify.validity.ranges import check_ranges
+
 if TYPE_CHECKING:
     from gyrify.config import Config
 
-CHECKS: Final[tuple[Callable[[Config], list[str]], ...]] = ()
+CHECKS: Final[tuple[Callable[[Config], list[str]], ...]] = (
+    check_ranges,
+    check_lengths,
+)
 
 
 def config_warnings(config: Config) -> list[str]:

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
 from gyrify.config.words import shorten
 from gyrify.errors import HistoryError
+from gyrify.measuring import earlier_rows
 from gyrify.store.derived import read_metrics
 from gyrify.store.history import History
-from gyrify.summary import summarise
+from gyrify.summary import earlier_summary, summarise
 from gyrify.verify.result import Check
 from gyrify.versions import versions
 
 # Largest relative difference between a stored and a recomputed metric.
 METRIC_BOUND: Final = 1e-9
+# Largest difference of what is zero but for rounding; of lengths, in a body as large as the standard slice.
+ROUNDING: Final = 1e-12
 # Keys of a summary that older versions did not write.
 LATER_KEYS: Final = frozenset({"warnings", "stability_changes", "visible_growth_time", "relaxed"})
 
@@ -25,52 +29,75 @@ def check_metrics(
     history: History, folder: Path, rows: list[dict[str, Any]], summary: dict[str, Any] | None
 ) -> Iterator[Check]:
     """Stored metrics against recomputed ones."""
-    path = folder / "metrics.csv"
+    path, scale = folder / "metrics.csv", history.config.geometry.scale
     if path.is_file():
         try:
             stored = read_metrics(path)
         except HistoryError as damaged:
             yield Check("metrics.csv", False, str(damaged))
             return
-        found = {str(n): row for n, row in enumerate(rows)}
-        yield _compare("metrics.csv", stored, found)
+        check = _compare("metrics.csv", stored, _numbered(rows), scale)
+        if not check.passed:
+            check = _by_earlier_rules(check, stored, _numbered(earlier_rows(history)), scale)
+        yield check
     if summary is not None:
-        yield _compare("summary.json", *_comparable(history, summary, summarise(history)))
+        check = _compare("summary.json", *_comparable(history, summary, summarise(history)), scale)
+        if not check.passed:
+            earlier = {**earlier_summary(history), "warnings": summary.get("warnings")}
+            check = _by_earlier_rules(check, *_comparable(history, summary, earlier), scale)
+        yield check
+
+
+def _numbered(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    return {str(n): row for n, row in enumerate(rows)}
+
+
+def _by_earlier_rules(check: Check, stored: Any, found: Any, scale: float) -> Check:
+    """A failed check, unless the numbers are those of the rules of measuring of the time."""
+    earlier = _compare(check.name, stored, found, scale)
+    if not earlier.passed:
+        return check
+    text = (
+        "Equals what the states give by the earlier rules of measuring: bumps without sulci count as gyri, "
+        "and GI closing may exceed GI hull. `gyrify export --format metrics` measures again."
+    )
+    return replace(earlier, sentence=text)
 
 
 def _comparable(
     history: History, stored: dict[str, Any], found: dict[str, Any]
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Both summaries, but for sentences and keys of another version of gyrify."""
-    if history.versions.get("gyrify") == versions()["gyrify"] and "warnings" in stored:
+    if history.versions.get("gyrify") == versions()["gyrify"] and stored.keys() >= LATER_KEYS:
         return stored, found
     left_out = {"warnings", *(LATER_KEYS - stored.keys())}
     return tuple({k: v for k, v in summary.items() if k not in left_out} for summary in (stored, found))  # type: ignore[return-value]
 
 
-def _compare(name: str, stored: dict[str, Any], found: dict[str, Any]) -> Check:
-    differing = list(_differences(stored, found, ""))
+def _compare(name: str, stored: dict[str, Any], found: dict[str, Any], scale: float) -> Check:
+    """Both tables; ``scale`` is the size of the body over that of the standard slice."""
+    differing = list(_differences(stored, found, "", scale))
     if not differing:
         return Check(name, True, f"Equals what the states give, to {METRIC_BOUND:g}.", 0.0, METRIC_BOUND)
     more = f" and {len(differing) - 1} more" if len(differing) > 1 else ""
     return Check(name, False, f"Differs from what the states give: {differing[0]}{more}.")
 
 
-def _differences(stored: Any, found: Any, place: str) -> Iterator[str]:
+def _differences(stored: Any, found: Any, place: str, scale: float) -> Iterator[str]:
     """Names of the values that differ, tables opened."""
     if isinstance(stored, dict) and isinstance(found, dict):
         for key in sorted({*stored, *found}):
             inner = f"{place}.{key}" if place else str(key)
-            yield from _differences(stored.get(key, "missing"), found.get(key, "missing"), inner)
-    elif not _is_equal(stored, found):
+            yield from _differences(stored.get(key, "missing"), found.get(key, "missing"), inner, scale)
+    elif not _is_equal(stored, found, ROUNDING * (scale if "_mm" in place else 1.0)):
         yield f"{shorten(place)} = {shorten(str(stored))}, not {shorten(str(found))}"
 
 
-def _is_equal(stored: Any, found: Any) -> bool:
+def _is_equal(stored: Any, found: Any, rounding: float) -> bool:
     """Equal as text (CSV holds nothing else), or as numbers up to rounding."""
     if stored == found or str(stored) == str(found) or (stored == "" and found is None):
         return True
     try:
-        return math.isclose(float(stored), float(found), rel_tol=METRIC_BOUND, abs_tol=1e-12)
+        return math.isclose(float(stored), float(found), rel_tol=METRIC_BOUND, abs_tol=rounding)
     except (TypeError, ValueError, OverflowError):
         return False

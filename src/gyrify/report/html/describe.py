@@ -7,6 +7,7 @@ from typing import Any
 
 from gyrify.config import Config
 from gyrify.config.table import plain, rows
+from gyrify.config.words import decimals
 from gyrify.store.history import History
 
 
@@ -70,14 +71,18 @@ def numbers(summary: dict[str, Any]) -> list[list[Any]]:
         ["GI, hull", gi["hull"], "", 3, "Contour over the perimeter of the convex hull"],
         ["GI, exposed", gi["exposed"], "", 3, "Contour over the part of it on the closing's outline"],
         ["gyri", summary["n_gyri"], "", None, "Maxima of the normal displacement from the smooth contour"],
-        ["deepest sulcus", depth["max"], "mm", 2, "Distance of the deepest fundus to the closing's outline"],
-        ["cortex at crowns", thickness["crown"], "mm", 2, "Mean shortest distance to the interface"],
-        ["cortex at fundi", thickness["fundus"], "mm", 2, "Mean shortest distance to the interface"],
+        _length("deepest sulcus", depth["max"], "Distance of the deepest fundus to the closing's outline"),
+        _length("cortex at crowns", thickness["crown"], "Mean shortest distance to the interface"),
+        _length("cortex at fundi", thickness["fundus"], "Mean shortest distance to the interface"),
     ]
     if onset is not None:
         lost = f"Growth time at which the slice lost stability. {summary['stability_note']}".strip()
         found.append(["stability lost at time", onset["growth_time"], "", 1, lost])
     return found
+
+
+def _length(label: str, value: float, about: str) -> list[Any]:
+    return [label, value, "mm", decimals([value], 2), about]
 
 
 def settings(config: Config) -> list[dict[str, Any]]:
@@ -87,7 +92,7 @@ def settings(config: Config) -> list[dict[str, Any]]:
             "key": row.key,
             "value": plain(row.value),
             "unit": row.unit,
-            "changed": row.default is not None and row.value != row.default,
+            "changed": row.is_changed,
             "about": row.doc,
             "source": row.source,
         }

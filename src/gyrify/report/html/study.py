@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from gyrify.config.table import plain
+from gyrify.config.words import decimals
 from gyrify.report.html.colours import colour_maps
 from gyrify.report.html.page import STUDY_SCRIPTS, page
 from gyrify.report.html.study_runs import described_run
@@ -95,8 +96,14 @@ def _columns(rows: Sequence[Row], keys: Sequence[str]) -> list[dict[str, Any]]:
             }
         )
     return columns + [
-        {"key": key, "label": label, "decimals": decimals, "is_number": True, "is_given": False}
-        for key, label, decimals in _QUANTITIES
+        {
+            "key": key,
+            "label": label,
+            "decimals": usual and decimals((row.get(key) for row in rows), usual),
+            "is_number": True,
+            "is_given": False,
+        }
+        for key, label, usual in _QUANTITIES
         if any(row.get(key) is not None for row in rows)
     ]
 

@@ -14,7 +14,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from gyrify.mesh import GREY
-from gyrify.metrics import find_folds, periodic_extrema
+from gyrify.metrics.folds import gyri_of, periodic_extrema
 from gyrify.report.figures import draw_tissues
 from gyrify.report.page import COLOURS, LINE_MM, MARGIN_MM, MM, scale_bar
 from gyrify.report.plot.fields import PAINTS, colour_bar, common_scale, draw_field
@@ -79,7 +79,7 @@ def _folds(state: Shown, contour: FloatArray, arc: FloatArray) -> tuple[FloatArr
     """Arc lengths of crowns and fundi; those of a strip lie on points, between which its height is linear."""
     chosen = state.history.config.metrics
     if state.history.mesh.period is None:
-        folds = find_folds(contour, chosen.gyrus_prominence, chosen.samples)
+        folds = gyri_of(contour, chosen.gyrus_prominence, chosen.samples)
         along = _arc(folds.points)
         return along[folds.crowns], along[folds.fundi]
     crowns, fundi = periodic_extrema(contour[:, 1], chosen.gyrus_prominence)
