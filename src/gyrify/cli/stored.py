@@ -13,13 +13,21 @@ from gyrify.cli.streams import print_json, say
 RunFolder = Annotated[Path, Parameter(name="RUN", help="Run folder.")]
 
 
-def verify(run_folder: RunFolder, /, *, json: bool = False) -> int:
+def verify(
+    run_folder: RunFolder,
+    /,
+    *,
+    json: bool = False,
+    quiet: bool = False,  # noqa: ARG001 - for uniformity
+) -> int:
     """Recheck a stored run from its files alone; exit code 1 if a check fails.
 
     Parameters
     ----------
     json : bool
         Print one JSON document.
+    quiet : bool
+        Show no progress.
     """
     from gyrify.verify import verify as recheck
 
@@ -40,6 +48,7 @@ def export(
     state: int = -1,
     every: bool = False,
     json: bool = False,
+    quiet: bool = False,  # noqa: ARG001 - for uniformity
 ) -> None:
     """Write states of a run for another program.
 
@@ -55,6 +64,8 @@ def export(
         Write every state that ``output.every`` asks for, as a time series.
     json : bool
         Print the names of the files as one JSON document.
+    quiet : bool
+        Show no progress.
     """
     from gyrify.store import History
     from gyrify.store.export import export as write
