@@ -18,7 +18,9 @@ from gyrify.versions import versions
 # Largest relative difference between a stored and a recomputed metric.
 METRIC_BOUND: Final = 1e-9
 # Keys of a summary that older versions did not write.
-LATER_KEYS: Final = frozenset({"warnings", "stability_changes", "visible_growth_time", "relaxed"})
+LATER_KEYS: Final = frozenset(
+    {"warnings", "stability_changes", "visible_growth_time", "relaxed", "parameters", "units"}
+)
 
 
 def check_metrics(
@@ -42,7 +44,7 @@ def _comparable(
     history: History, stored: dict[str, Any], found: dict[str, Any]
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Both summaries, but for sentences and keys of another version of gyrify."""
-    if history.versions.get("gyrify") == versions()["gyrify"] and "warnings" in stored:
+    if history.versions.get("gyrify") == versions()["gyrify"] and stored.keys() >= LATER_KEYS:
         return stored, found
     left_out = {"warnings", *(LATER_KEYS - stored.keys())}
     return tuple({k: v for k, v in summary.items() if k not in left_out} for summary in (stored, found))  # type: ignore[return-value]
