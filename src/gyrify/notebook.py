@@ -5,18 +5,18 @@ from __future__ import annotations
 import base64
 import io
 from html import escape
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gyrify.errors import GyrifyError
+from gyrify.extras import require
 from gyrify.outputs import folded_picture
 from gyrify.store.fields import POINT_FIELDS, fields
 from gyrify.store.history import History
 from gyrify.summary import metrics_rows, summarise
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
     from pandas import DataFrame
     from pyvista import UnstructuredGrid
 
@@ -50,6 +50,13 @@ def html(history: History) -> str:
     )
 
 
+def plot(history: Any, what: str, **options: Any) -> Figure:
+    """Draw a run, as `gyrify.plot` does."""
+    from gyrify.report.plot import plot as draw
+
+    return draw(history, what, **options)  # type: ignore[arg-type]
+
+
 def to_dataframe(history: History) -> DataFrame:
     """Metrics of every state as a pandas table.
 
@@ -65,7 +72,7 @@ def to_dataframe(history: History) -> DataFrame:
 
     Raises
     ------
-    GyrifyError
+    ConfigError
         If pandas is not installed.
     """
     return _library("pandas").DataFrame(metrics_rows(history)).set_index("increment")
@@ -88,7 +95,7 @@ def to_pyvista(history: History, index: int = -1) -> UnstructuredGrid:
 
     Raises
     ------
-    GyrifyError
+    ConfigError
         If PyVista is not installed.
     HistoryError
         If there is no such state.
@@ -109,12 +116,7 @@ def _in_space(vectors: Any) -> Any:
 
 
 def _library(name: str) -> Any:
-    try:
-        return import_module(name)
-    except ImportError as error:
-        raise GyrifyError(
-            f"This needs {name}, which is not installed.", f"Install it with: pip install {name}"
-        ) from error
+    return require(name, "notebook", "This")
 
 
 def _lines(summary: dict[str, Any]) -> list[tuple[str, str]]:

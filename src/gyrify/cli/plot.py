@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
+import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Final, Literal
 
 from cyclopts import Parameter
 
+from gyrify.cli.options import number
 from gyrify.cli.overrides import Text
-from gyrify.cli.stored import RunFolder
 from gyrify.cli.streams import print_json, say
 from gyrify.errors import ConfigError
 
 What = Literal["folded", "gi", "stress", "thickness", "energy", "mode", "dispersion"]
 _SUFFIXES: Final = (".png", ".svg", ".pdf")
+_LONGEST_NAME: Final = 80
 _FEWEST_DPI, _MOST_DPI = 50, 1200
 
 
 def plot(
-    run_folder: RunFolder,
+    run_folder: Annotated[Path, Parameter(name="RUN_OR_STUDY", help="Run folder or study folder.")],
     /,
     *,
     what: What = "folded",
@@ -30,8 +34,9 @@ def plot(
     width: Text = None,
     dpi: int = 300,
     json: bool = False,
+    quiet: bool = False,  # noqa: ARG001 - for uniformity
 ) -> None:
-    """Draw a run at journal quality.
+    """Draw a run, or the folded slices of a study in a grid, at journal quality.
 
     Parameters
     ----------
@@ -39,11 +44,12 @@ def plot(
         folded: the slice. gi: indices against growth. stress, thickness: as colour. energy: where the work of
         growth goes. mode: along which stability was lost. dispersion: exact growth at onset of each mode.
     out : Path, optional
-        File to write, .png, .svg or .pdf; by default plot-WHAT.png in the run folder.
+        File to write, .png, .svg or .pdf; by default plot-WHAT.png in the folder, named
+        after what else was chosen.
     at : str, optional
         Growth time; the nearest stored state is shown, and curves end there.
     compare : Path, optional
-        Folders of further runs, shown beside it at one scale.
+        Folders of further runs, shown beside it at one scale: any number of slices, seven for curves.
     stress : str, optional
         The one stress to show instead of three.
     width : str, optional
@@ -52,8 +58,10 @@ def plot(
         Pixels per inch of a .png, and of fields of colour in the others.
     json : bool
         Print what was written as one JSON document.
+    quiet : bool
+        Show no progress.
     """
-    target = out if out is not None else run_folder / f"plot-{what}.png"
+    target = out if out is not None else run_folder / default_name(run_folder, what, at, compare, stress)
     _check(target, dpi)
     if what == "dispersion":  # matrices of 200 rows are slower with more threads; numpy is not loaded yet
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -65,9 +73,9 @@ def plot(
         run_folder,
         what,
         compare=compare,
-        at=number("--at", at),
+        at=None if at is None else number("--at", at),
         stress=stress,
-        width_mm=number("--width", width),
+        width_mm=None if width is None else number("--width", width),
     )
     with storage_faults(target.parent, f"The picture {target}"):
         save_figure(figure, target, dpi=dpi)
@@ -77,22 +85,24 @@ def plot(
         say(str(target))
 
 
-def number(option: str, text: str | None) -> float | None:
-    """Number that an option was given, which may be a fraction; None where it was not given.
+def default_name(folder: Path, what: str, at: str | None, compare: Sequence[Path], stress: str | None) -> str:
+    """Name of a picture: one for each thing that can be shown, so that none replaces another."""
+    parts = [f"plot-{what}", *([stress] if stress else []), *([f"at-{at.strip()}"] if at else [])]
+    if compare:
+        parts += ["with", *(_relative(other, folder) for other in compare)]
+    name = re.sub(r"[^\w.-]+", "-", "-".join(parts))
+    if len(name) > _LONGEST_NAME:
+        digest = hashlib.sha256(name.encode()).hexdigest()[:8]
+        name = f"{name[:_LONGEST_NAME]}-{digest}"
+    return f"{name}.png"
 
-    Raises
-    ------
-    ConfigError
-        If it is not a number.
-    """
-    from gyrify.config.numbers import parse_number
 
-    if text is None:
-        return None
+def _relative(other: Path, folder: Path) -> str:
+    """Path of another run, as short as it can be beside this one."""
     try:
-        return parse_number(text)
-    except ValueError as fault:
-        raise ConfigError(f"{option} {text[:60]!r} is not a number: {fault}.", "Give a number.") from fault
+        return str(other.resolve().relative_to(folder.resolve().parent))
+    except ValueError:
+        return str(other).strip("/.")
 
 
 def _check(target: Path, dpi: int) -> None:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+import re
 import stat
+import sys
 import tomllib
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Final
 
+from gyrify.config.numbers import MAX_LENGTH, NUMBER_PATTERN, number_advice
 from gyrify.config.words import shorten
 from gyrify.errors import ConfigError
 
@@ -48,6 +51,25 @@ def read_text(path: Path) -> str:
         raise ConfigError(
             f"{name} cannot be read: {reason}.", "Check the path and its permissions."
         ) from None
+    return _decoded(data, name)
+
+
+def read_standard_input() -> str:
+    """Read a configuration or a study from standard input, as `read_text` reads a file.
+
+    Raises
+    ------
+    ConfigError
+        When there is nothing, too much, or no UTF-8.
+    """
+    stream = getattr(sys.stdin, "buffer", None)
+    data = (sys.stdin.read(MAX_BYTES + 1).encode() if stream is None else stream.read(MAX_BYTES + 1)) or b""
+    if not data.strip():
+        raise ConfigError("Standard input is empty.", "Write TOML to it, such as: gyrify run - < soft.toml")
+    return _decoded(data, "Standard input")
+
+
+def _decoded(data: bytes, name: str) -> str:
     if len(data) > MAX_BYTES:
         raise ConfigError(f"{name} is larger than {MAX_BYTES // 1024} KiB.", "Name a configuration in TOML.")
     try:
@@ -81,10 +103,28 @@ def parse(text: str, name: str = "The configuration") -> dict[str, Any]:
         reason = shorten(" ".join(str(error).split()), MAX_REASON)
     except ValueError:
         reason = "it holds a number of too many digits"
+    hint = _line_advice(text, reason)
     file_hint = (
         " To read a file, use Config.load." if text.strip().endswith(".toml") and "\n" not in text else ""
     )
-    raise ConfigError(f"{name} is not valid TOML: {reason}.", f"Mend or complete that line.{file_hint}")
+    raise ConfigError(
+        f"{name} is not valid TOML: {reason}.", f"{hint or 'Correct or complete that line.'}{file_hint}"
+    )
+
+
+def _line_advice(text: str, reason: str) -> str:
+    """What is wrong with the line that a reason names, where a number is written as TOML does not."""
+    place = re.search(r"at line (\d+)", reason)
+    lines = text.splitlines()
+    if place is None or not 0 < int(place[1]) <= len(lines):
+        return ""
+    _, equals, value = lines[int(place[1]) - 1].partition("=")
+    value = value.partition("#")[0].strip()
+    if not equals or len(value) > MAX_LENGTH:
+        return ""
+    if re.match(NUMBER_PATTERN, value, re.ASCII) and "/" in value:
+        return f'Write a fraction in quotes: "{value}".'
+    return number_advice(value)
 
 
 def literal(value: Any) -> str:

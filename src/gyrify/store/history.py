@@ -22,13 +22,14 @@ from gyrify.solve.types import FloatArray
 from gyrify.store.database import RERUN
 from gyrify.store.journal import Journal
 from gyrify.store.lock import has_owner
+from gyrify.store.views import Views
 
 if TYPE_CHECKING:
     from pandas import DataFrame
     from pyvista import UnstructuredGrid
 
 
-class History:
+class History(Views):
     """States of a run in the order of growth; increment 0 is the reference state.
 
     Parameters
@@ -64,7 +65,7 @@ class History:
         if len(history) == 0:
             raise HistoryError(f"The run in {folder} has no state yet.", "Continue it with `gyrify resume`.")
         if history.positions[-1] > TICKS * history.config.solver.increments:
-            raise HistoryError(f"The run in {folder} goes beyond the end of its growth.", RERUN)
+            raise HistoryError(f"The run in {folder} holds states beyond the end of growth.", RERUN)
         return history
 
     @cached_property
@@ -136,7 +137,7 @@ class History:
             )
         found = self.journal.displacement(number)
         if found.shape != self.slice.state_shape:
-            raise HistoryError(f"State {index} is none of the mesh of its configuration.", RERUN)
+            raise HistoryError(f"State {index} does not fit the mesh of its configuration.", RERUN)
         return found
 
     def points(self, index: int = -1) -> FloatArray:
@@ -177,7 +178,11 @@ class History:
     @property
     def reason(self) -> str:
         """Why the run ended early; empty when it completed."""
-        return "Its process ended without a word." if self._is_abandoned else self.journal.meta("reason")
+        return (
+            "Its process ended unexpectedly, without a message."
+            if self._is_abandoned
+            else self.journal.meta("reason")
+        )
 
     @property
     def advice(self) -> str:
@@ -273,17 +278,19 @@ class History:
 
         return to_dataframe(self)
 
-    def to_pyvista(self, index: int = -1) -> UnstructuredGrid:
+    def to_pyvista(self, index: int = -1, *, time: float | None = None) -> UnstructuredGrid:
         """A state as a PyVista grid with all its fields; see `gyrify.notebook`.
 
         Parameters
         ----------
         index : int
             State; negative numbers count from the end.
+        time : float, optional
+            Growth time, in place of the index; see `at`.
         """
         from gyrify.notebook import to_pyvista
 
-        return to_pyvista(self, index)
+        return to_pyvista(self, index if time is None else self.at(time))
 
     def _repr_html_(self) -> str:
         from gyrify.notebook import html

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from shlex import quote
 from typing import Any, Final, Literal, get_args
 
 from gyrify.config import Config, toml_text
@@ -41,7 +43,7 @@ class Point:
         return self.config.config_hash[:KEY_DIGITS]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Study:
     """What to run.
 
@@ -59,6 +61,10 @@ class Study:
     design: Design
     keep: Keep = "final"
 
+    def __repr__(self) -> str:
+        varied = ", ".join(parameter.key for parameter in self.design.parameters) or "points written out"
+        return f"Study({self.design.kind} of {varied}: {len(self.points())} points, keep {self.keep})"
+
     @classmethod
     def from_toml(cls, path: str | Path) -> Study:
         """Read a study file.
@@ -75,7 +81,14 @@ class Study:
         """
         file = Path(path)
         name = f"The study file {shorten(str(file), toml_text.MAX_PATH)}"
-        return cls.from_mapping(toml_text.parse(toml_text.read_text(file), name), file.parent)
+        tables = toml_text.parse(toml_text.read_text(file), name)
+        if _is_configuration(tables):
+            raise ConfigError(
+                f"The file {shorten(str(file), toml_text.MAX_PATH)} describes one run, not a study: "
+                "it has no table [design].",
+                f"Run it with: gyrify run {quote(str(file))}",
+            )
+        return cls.from_mapping(tables, file.parent)
 
     @classmethod
     def from_mapping(cls, tables: Mapping[str, Any], folder: Path | None = None) -> Study:
@@ -93,6 +106,11 @@ class Study:
         ConfigError
             If a field is wrong.
         """
+        if _is_configuration(tables):
+            raise ConfigError(
+                "This describes one run, not a study: it has no table [design].",
+                "Run it with `gyrify run`, or with simulate; a study has the tables [base] and [design].",
+            )
         require_known(tables, ("base", "design", "keep"), "a study")
         study = cls(
             _base(tables.get("base", {}), folder or Path()),
@@ -115,8 +133,8 @@ class Study:
             point = _point(self.base, overrides, number)
             if point.key in points:
                 raise ConfigError(
-                    f"Point {number} of the design ({_told(overrides)}) is there twice.",
-                    "Give each value once; a random choice among few values repeats itself: use a grid.",
+                    f"Point {number} of the design ({_told(overrides)}) is given twice.",
+                    "Give each value once; a random design of few values draws some points twice: use a grid.",
                 )
             points[point.key] = point
         return tuple(points.values())
@@ -125,6 +143,25 @@ class Study:
         """Write the study with every value of its base; reading it back gives equal points."""
         base = re.sub(r"^\[(\w+)\]$", r"[base.\1]", self.base.to_toml(), flags=re.MULTILINE)
         return f'keep = "{self.keep}"\n\n[base]\n{base}\n{_design_toml(self.design)}'
+
+
+def _is_configuration(tables: Mapping[str, Any]) -> bool:
+    """Whether tables describe one run."""
+    return "design" not in tables and bool(tables.keys() & {*Config.model_fields, "preset"})
+
+
+def as_study(given: Study | Mapping[str, Any] | str | os.PathLike[str]) -> Study:
+    """Return the study that is meant: itself, its tables, or that of a file."""
+    if isinstance(given, Study):
+        return given
+    if isinstance(given, Mapping):
+        return Study.from_mapping(given)
+    if isinstance(given, str | os.PathLike):
+        return Study.from_toml(Path(given))
+    raise ConfigError(
+        f"A study cannot be made from an object of type {type(given).__name__}.",
+        "Give a Study, a dict of its tables, or the path of a study file.",
+    )
 
 
 def value_of(config: Config, key: str) -> Any:
@@ -152,7 +189,10 @@ def _base(table: object, folder: Path) -> Config:
     if source is None:
         return Config.from_dict(own)
     if not isinstance(source, str) or "preset" in own:
-        raise ConfigError("base needs either a preset or config, the path of a file.", "Leave one out.")
+        raise ConfigError(
+            "base takes either preset or config, the path of a file, and config must be text.",
+            "Leave one out.",
+        )
     return Config.from_dict(merge(read_tables(folder / source), own))
 
 
