@@ -164,7 +164,7 @@ COMMAND_LINE = [
     Case("command", "an unknown command", ('Did you mean "check"?',), args=("config", "chekc"), foreign=True),
 ]  # fmt: skip
 STORED = [
-    Case("holds-run", "an output folder that holds a run", ("run already holds a run", "--overwrite", "gyrify resume run"), args=(*RUN, "run"), prepare=bad_runs.stored, shown="`gyrify run --out run`"),
+    Case("holds-run", "an output folder that holds another run", ("run already holds a run of another configuration", "growth.ratio is 3.6 there and 2.0 here", "--overwrite", "gyrify resume run"), args=(*RUN, "run", "--growth-ratio", "2"), prepare=bad_runs.stored, shown="`gyrify run --growth-ratio 2 --out run`"),
     Case("out-file", "an output folder that is a file", ("notes.txt is a file", "--out"), args=(*RUN, "notes.txt"), prepare=bad_runs.file_in_the_way, shown="`gyrify run --out notes.txt`"),
     Case("out-under-file", "an output folder under a file", ("notes.txt is a file", "--out"), args=(*RUN, "notes.txt/run"), prepare=bad_runs.file_in_the_way, shown="`gyrify run --out notes.txt/run`"),
     Case("read-only", "an output folder that is read-only", ("locked/run cannot be written: Permission denied", "--out"), args=(*RUN, "locked/run"), scene=bad_runs.read_only, shown="`gyrify run --out locked/run`"),

@@ -7,9 +7,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from gyrify.config import Config
+from gyrify.config import Config, ConfigLike, as_config
 from gyrify.errors import ConfigError
 from gyrify.model import Slice
+from gyrify.progress import progress_observer
+from gyrify.repeat import known_run
 from gyrify.run import Observer, Progress, Run
 from gyrify.store.faults import storage_faults
 from gyrify.store.folder import JOURNAL, new_folder, stored_folder, write_config
@@ -21,13 +23,13 @@ __all__ = ["Observer", "Progress", "new_run", "resume", "simulate", "stored_run"
 
 
 @contextmanager
-def new_run(config: Config, out: str | Path | None = None, *, overwrite: bool = False) -> Iterator[Run]:
+def new_run(config: ConfigLike, out: str | Path | None = None, *, overwrite: bool = False) -> Iterator[Run]:
     """Begin a run, and hold its folder until the end of the ``with`` block.
 
     Parameters
     ----------
-    config : Config
-        Every number of the run.
+    config : Config, dict or path
+        Every number of the run; a path is that of a TOML file.
     out : path, optional
         Run folder; without it, the run is kept in memory.
     overwrite : bool
@@ -42,6 +44,7 @@ def new_run(config: Config, out: str | Path | None = None, *, overwrite: bool = 
     HistoryError
         If the folder cannot be used.
     """
+    config = as_config(config)
     problem = Slice(config)
     meta = {"config": config.to_toml(), "versions": json.dumps(versions())}
     if out is None:
@@ -96,25 +99,31 @@ def stored_run(run: str | Path, overrides: Mapping[str, object] | None = None) -
 
 
 def simulate(
-    config: Config,
+    config: ConfigLike,
     out: str | Path | None = None,
     *,
     observers: Iterable[Observer] = (),
     overwrite: bool = False,
+    progress: bool = False,
 ) -> History:
     """Fold a slice.
 
+    A folder that holds this very run is used again: the stored run is returned if it completed, and continued
+    if it did not.
+
     Parameters
     ----------
-    config : Config
-        Every number of the run.
+    config : Config, dict or path
+        Every number of the run; a path is that of a TOML file.
     out : path, optional
         Run folder for the journal; without it, the run is kept in memory.
     observers : iterable of callables
         Called with a `Progress` at each accepted increment, once that is stored; what one raises ends the
         run.
     overwrite : bool
-        Whether a run in the folder may be replaced.
+        Whether a run in the folder, whatever it is, is replaced.
+    progress : bool
+        Whether progress is shown on stderr: a bar on a terminal, else a line at each tenth of growth.
 
     Returns
     -------
@@ -126,10 +135,18 @@ def simulate(
     SolveError
         If growth cannot be completed; all accepted increments are in the folder.
     HistoryError
-        If the folder cannot be used.
+        If the folder cannot be used, or holds a run of another configuration.
     """
-    with new_run(config, out, overwrite=overwrite) as run:
-        run.grow(observers)
+    config = as_config(config)
+    known = None if out is None or overwrite else known_run(config, Path(out))
+    if known is not None and known.status == "completed" and not known.changes:
+        return History.load(known.folder)
+    if known is None:
+        begin = new_run(config, out, overwrite=overwrite)
+    else:
+        begin = stored_run(known.folder, known.changes)
+    with begin as run, progress_observer(progress) as shown:
+        run.grow([*shown, *observers])
     return run.history
 
 
@@ -138,6 +155,7 @@ def resume(
     *,
     overrides: Mapping[str, object] | None = None,
     observers: Iterable[Observer] = (),
+    progress: bool = False,
 ) -> History:
     """Continue a run from its last accepted increment to the same end as if it had never stopped.
 
@@ -148,6 +166,8 @@ def resume(
     overrides : mapping, optional
         New values in ``limits`` and ``output``, by dotted key.
     observers : iterable of callables
+        As in `simulate`.
+    progress : bool
         As in `simulate`.
 
     Returns
@@ -162,8 +182,8 @@ def resume(
     SolveError
         If growth cannot be completed.
     """
-    with stored_run(run, overrides) as held:
-        held.grow(observers)
+    with stored_run(run, overrides) as held, progress_observer(progress) as shown:
+        held.grow([*shown, *observers])
     return held.history
 
 

@@ -20,6 +20,7 @@ from gyrify.cli.animate import animate
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, USAGE
 from gyrify.cli.converge import converge
 from gyrify.cli.early import ignore_interrupts
+from gyrify.cli.overrides import STANDARD_INPUT
 from gyrify.cli.paper import paper
 from gyrify.cli.plot import plot
 from gyrify.cli.report import report
@@ -67,7 +68,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         0 completed, 1 failed, 2 usage or configuration, 3 stopped by a limit, 130 interrupted.
     """
-    tokens = list(sys.argv[1:] if arguments is None else arguments)
+    given = sys.argv[1:] if arguments is None else arguments
+    tokens = [str(STANDARD_INPUT) if token == "-" else token for token in given]
     try:
         code = app(tokens, exit_on_error=False, print_error=False)
         sys.stdout.flush()

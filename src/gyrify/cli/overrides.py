@@ -7,7 +7,7 @@ import tomllib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 from cyclopts import Parameter
 
@@ -17,7 +17,12 @@ if TYPE_CHECKING:
     from gyrify.config import Config
 
 Text = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
-ConfigPath = Annotated[Path | None, Parameter(help="Configuration in TOML; without it, the standard slice.")]
+# What a single dash stands for, which would otherwise be read as an option.
+STANDARD_INPUT: Final = Path("/dev/stdin")
+ConfigPath = Annotated[
+    Path | None,
+    Parameter(help="Configuration in TOML, - for standard input; without it, the standard slice."),
+]
 SHORTCUTS: Final = {
     "stiffness_ratio": "material.stiffness_ratio",
     "growth_ratio": "growth.ratio",
@@ -77,7 +82,7 @@ def resolve_config(
     Parameters
     ----------
     config_path : Path, optional
-        TOML file.
+        TOML file; ``-`` for standard input.
     preset : str, optional
         Name of a preset.
     stiffness_ratio, growth_ratio, thickness, seed : str, optional
@@ -90,15 +95,24 @@ def resolve_config(
     Config
         Checked and complete.
     """
-    from gyrify.config.model import Config, merge, nested, read_tables
+    from gyrify.config.model import Config, merge, nested
 
     shortcuts = zip(SHORTCUTS.values(), (stiffness_ratio, growth_ratio, thickness, seed), strict=True)
     pairs = [(key, text) for key, text in shortcuts if text is not None]
     texts = once([*pairs, *map(split_assignment, set_)])
-    tables = read_tables(config_path) if config_path is not None else {}
+    tables = _tables(config_path)
     if preset is not None:
         tables["preset"] = preset
     return Config.from_dict(merge(tables, nested({key: read_value(text) for key, text in texts.items()})))
+
+
+def _tables(path: Path | None) -> dict[str, Any]:
+    from gyrify.config import toml_text
+    from gyrify.config.model import read_tables
+
+    if path == STANDARD_INPUT:
+        return toml_text.parse(toml_text.read_standard_input(), "Standard input")
+    return {} if path is None else read_tables(path)
 
 
 def split_assignment(text: str) -> tuple[str, str]:

@@ -18,6 +18,8 @@ from gyrify.cli.streams import complain, print_json, say, warn
 from gyrify.errors import HistoryError, SolveError
 
 if TYPE_CHECKING:
+    from gyrify.config import Config
+    from gyrify.repeat import KnownRun
     from gyrify.run import Observer, Run
 
 DEFAULT = Overrides()
@@ -36,12 +38,15 @@ def run(
 ) -> int:
     """Fold a slice, from configuration to metrics and a picture.
 
+    A folder that holds this very run is used again: nothing is computed if it completed, and it is continued
+    if it did not.
+
     Parameters
     ----------
     out : Path, optional
         Run folder; by default runs/ and the first 12 digits of the configuration's hash.
     overwrite : bool
-        Replace a run in that folder.
+        Replace a run in that folder, whatever it is.
     json : bool
         Print the summary as one JSON document.
     quiet : bool
@@ -50,10 +55,16 @@ def run(
     with Interrupts(json) as interrupts:
         resolved = overrides.resolve(config)
         folder = out if out is not None else Path("runs") / resolved.config_hash[:12]
-        from gyrify.simulation import new_run
+        from gyrify.repeat import known_run
+        from gyrify.simulation import new_run, stored_run
 
-        begin = new_run(resolved, folder, overwrite=overwrite)
-        return _carry_out(begin, folder, interrupts, json, quiet)
+        known = None if overwrite else known_run(resolved, folder)
+        if known is None:
+            return _carry_out(new_run(resolved, folder, overwrite=overwrite), folder, interrupts, json, quiet)
+        if known.is_done:
+            return _tell_done(known, resolved, json, quiet)
+        again = stored_run(folder, known.changes)
+        return _carry_out(again, folder, interrupts, json, quiet, known.note)
 
 
 def resume(
@@ -85,7 +96,12 @@ def resume(
 
 
 def _carry_out(
-    begin: AbstractContextManager[Run], folder: Path, interrupts: Interrupts, json: bool, quiet: bool
+    begin: AbstractContextManager[Run],
+    folder: Path,
+    interrupts: Interrupts,
+    json: bool,
+    quiet: bool,
+    note: str = "",
 ) -> int:
     """Grow, write all derived files whatever the end was, and say what it came to."""
     from gyrify.outputs import write_outputs, write_state
@@ -93,8 +109,9 @@ def _carry_out(
 
     with begin as run:
         interrupts.guard(folder)
-        if run.note and not quiet:
-            complain(run.note)
+        for sentence in filter(None, (note, run.note)):
+            if not quiet:
+                complain(sentence)
         told = config_warnings(run.problem.config)
         warn(told)
         try:
@@ -117,12 +134,24 @@ def _carry_out(
     return INTERRUPTED if interrupts.requested else _EXIT_CODES[summary["status"]]
 
 
+def _tell_done(known: KnownRun, config: Config, json: bool, quiet: bool) -> int:
+    """Say what a run that completed before came to; its warnings are told again."""
+    from gyrify.validity import config_warnings
+
+    if not quiet:
+        complain(known.note)
+    summary = known.summary or {}
+    warn(dict.fromkeys([*config_warnings(config), *summary.get("warnings", [])]))
+    print_json(summary) if json else _report(summary, known.folder)
+    return COMPLETED
+
+
 def _grow(run: Run, interrupts: Interrupts, quiet: bool) -> None:
     """Grow to whatever end; the run keeps a record of it."""
-    from gyrify.cli.progress import progress_observer
+    from gyrify.progress import progress_observer
 
-    note = _compilation_note(quiet)
-    with suppress(SolveError, MemoryError, KeyboardInterrupt), progress_observer(quiet) as observers:
+    note, shown = _compilation_note(quiet), progress_observer(not quiet, complain)
+    with suppress(SolveError, MemoryError, KeyboardInterrupt), shown as observers:
         try:
             run.grow([_silencer(note), *observers], interrupts.watch)
         finally:

@@ -11,19 +11,21 @@ from cyclopts import Parameter
 
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, STOPPED
 from gyrify.cli.interrupts import ends_are_interrupts
+from gyrify.cli.overrides import STANDARD_INPUT
 from gyrify.cli.streams import complain, print_json, say
+from gyrify.errors import ConfigError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from gyrify.study import StudyResult
+    from gyrify.study import Study, StudyResult
 
 _EXIT_CODES = {"completed": COMPLETED, "failed": FAILED, "stopped": STOPPED}
 _SHOWN = 10
 
 
 def study(
-    file: Annotated[Path, Parameter(name="FILE", help="Study in TOML.")],
+    file: Annotated[Path, Parameter(name="FILE", help="Study in TOML, - for standard input.")],
     /,
     *,
     out: Path | None = None,
@@ -53,10 +55,9 @@ def study(
         Show no progress.
     """
     from gyrify.cli.study_progress import progress_of_points
-    from gyrify.study.definition import Study
     from gyrify.study.run import run_study
 
-    described = Study.from_toml(file)
+    described = _described(file, out)
     folder = Path("studies") / file.stem if out is None else out
     processes = _cores() if workers is None else workers
     try:
@@ -82,6 +83,18 @@ def study(
     else:
         _report(result, folder, pictures)
     return _EXIT_CODES[result.status]
+
+
+def _described(file: Path, out: Path | None) -> Study:
+    """The study of a file, or of standard input, which has no name that a folder could take."""
+    from gyrify.config import toml_text
+    from gyrify.study.definition import Study
+
+    if file != STANDARD_INPUT:
+        return Study.from_toml(file)
+    if out is None:
+        raise ConfigError("A study from standard input has no name for its folder.", "Add --out DIR.")
+    return Study.from_mapping(toml_text.parse(toml_text.read_standard_input(), "Standard input"))
 
 
 def _cores() -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from gyrify.config.given import ConfigLike, as_config
 from gyrify.config.model import Config
 from gyrify.config.numbers import parse_number
 from gyrify.config.physics_sections import Contact, Dissipation, Geometry, Growth, Material, MeshSettings
@@ -10,6 +11,7 @@ from gyrify.config.run_sections import Limits, Metrics, Output, Solver, Stabilit
 
 __all__ = [
     "Config",
+    "ConfigLike",
     "Contact",
     "Dissipation",
     "Geometry",
@@ -22,6 +24,7 @@ __all__ = [
     "PresetAbout",
     "Solver",
     "Stability",
+    "as_config",
     "parse_number",
     "preset_about",
     "preset_names",

@@ -6,6 +6,7 @@ import hashlib
 import json
 from collections.abc import Mapping
 from pathlib import Path
+from shlex import quote
 from typing import Any, Final
 
 from pydantic import model_validator
@@ -17,6 +18,7 @@ from gyrify.config.physics_sections import Contact, Dissipation, Geometry, Growt
 from gyrify.config.preset_files import preset_data
 from gyrify.config.run_sections import Limits, Metrics, Output, SchemaVersion, Solver, Stability
 from gyrify.config.words import extra, shorten, show
+from gyrify.errors import ConfigError
 
 NOT_HASHED: Final = frozenset({"output", "limits"})
 
@@ -75,6 +77,11 @@ class Config(Section):
         Config
             Checked and complete.
         """
+        if "design" in data:
+            raise ConfigError(
+                "This describes a study of many runs, not one run: it has a table [design].",
+                "Run it with `gyrify study FILE`, or with run_study.",
+            )
         return cls(**{str(key): value for key, value in data.items()})
 
     @classmethod
@@ -196,7 +203,14 @@ class Config(Section):
 def read_tables(path: str | Path) -> dict[str, Any]:
     """Read the tables of a TOML file without checking what they mean."""
     name = f"The configuration file {shorten(str(path), toml_text.MAX_PATH)}"
-    return toml_text.parse(toml_text.read_text(Path(path)), name)
+    tables = toml_text.parse(toml_text.read_text(Path(path)), name)
+    if "design" in tables:
+        raise ConfigError(
+            f"The file {shorten(str(path), toml_text.MAX_PATH)} describes a study of many runs, not one run: "
+            "it has a table [design].",
+            f"Run it with: gyrify study {quote(str(path))}",
+        )
+    return tables
 
 
 def merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:

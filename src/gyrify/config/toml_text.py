@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import stat
+import sys
 import tomllib
 from collections.abc import Iterable
 from pathlib import Path
@@ -48,6 +49,25 @@ def read_text(path: Path) -> str:
         raise ConfigError(
             f"{name} cannot be read: {reason}.", "Check the path and its permissions."
         ) from None
+    return _decoded(data, name)
+
+
+def read_standard_input() -> str:
+    """Read a configuration or a study from standard input, as `read_text` reads a file.
+
+    Raises
+    ------
+    ConfigError
+        When there is nothing, too much, or no UTF-8.
+    """
+    stream = getattr(sys.stdin, "buffer", None)
+    data = (sys.stdin.read(MAX_BYTES + 1).encode() if stream is None else stream.read(MAX_BYTES + 1)) or b""
+    if not data.strip():
+        raise ConfigError("Standard input is empty.", "Write TOML to it, such as: gyrify run - < soft.toml")
+    return _decoded(data, "Standard input")
+
+
+def _decoded(data: bytes, name: str) -> str:
     if len(data) > MAX_BYTES:
         raise ConfigError(f"{name} is larger than {MAX_BYTES // 1024} KiB.", "Name a configuration in TOML.")
     try:

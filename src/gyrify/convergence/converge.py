@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from gyrify.config import Config
+from gyrify.config import Config, ConfigLike, as_config
 from gyrify.convergence.plan import SUBJECTS, Subject, plan
 from gyrify.convergence.result import Convergence, Family, Level
 from gyrify.convergence.runs import complete_all
@@ -17,7 +17,7 @@ Teller = Callable[[Level, int, int], None]
 
 
 def converge(
-    config: Config,
+    config: ConfigLike,
     out: str | Path | None = None,
     *,
     levels: int = 3,
@@ -33,7 +33,7 @@ def converge(
 
     Parameters
     ----------
-    config : Config
+    config : Config, dict or path
         Where every family starts: its coarsest level.
     out : path, optional
         Folder for runs and results; by default ``convergence/`` and 12 digits of the configuration's hash.
@@ -62,7 +62,7 @@ def converge(
     KeyboardInterrupt
         At Ctrl-C; the same call continues.
     """
-    begun = time.perf_counter()
+    begun, config = time.perf_counter(), as_config(config)
     if not 0.0 < tolerance < 1.0:
         raise ConfigError(f"tolerance = {tolerance:g} is out of range (above 0, below 1).", "Try 0.02.")
     if not 1 <= workers <= 256:

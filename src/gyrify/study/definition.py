@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from shlex import quote
 from typing import Any, Final, Literal, get_args
 
 from gyrify.config import Config, toml_text
@@ -75,7 +77,14 @@ class Study:
         """
         file = Path(path)
         name = f"The study file {shorten(str(file), toml_text.MAX_PATH)}"
-        return cls.from_mapping(toml_text.parse(toml_text.read_text(file), name), file.parent)
+        tables = toml_text.parse(toml_text.read_text(file), name)
+        if _is_configuration(tables):
+            raise ConfigError(
+                f"The file {shorten(str(file), toml_text.MAX_PATH)} describes one run, not a study: it has no "
+                "table [design].",
+                f"Run it with: gyrify run {quote(str(file))}",
+            )
+        return cls.from_mapping(tables, file.parent)
 
     @classmethod
     def from_mapping(cls, tables: Mapping[str, Any], folder: Path | None = None) -> Study:
@@ -93,6 +102,11 @@ class Study:
         ConfigError
             If a field is wrong.
         """
+        if _is_configuration(tables):
+            raise ConfigError(
+                "This describes one run, not a study: it has no table [design].",
+                "Run it with `gyrify run` or simulate; for many runs, write a study with [base] and [design].",
+            )
         require_known(tables, ("base", "design", "keep"), "a study")
         study = cls(
             _base(tables.get("base", {}), folder or Path()),
@@ -125,6 +139,25 @@ class Study:
         """Write the study with every value of its base; reading it back gives equal points."""
         base = re.sub(r"^\[(\w+)\]$", r"[base.\1]", self.base.to_toml(), flags=re.MULTILINE)
         return f'keep = "{self.keep}"\n\n[base]\n{base}\n{_design_toml(self.design)}'
+
+
+def _is_configuration(tables: Mapping[str, Any]) -> bool:
+    """Whether tables describe one run."""
+    return "design" not in tables and bool(tables.keys() & {*Config.model_fields, "preset"})
+
+
+def as_study(given: Study | Mapping[str, Any] | str | os.PathLike[str]) -> Study:
+    """Return the study that is meant: itself, its tables, or that of a file."""
+    if isinstance(given, Study):
+        return given
+    if isinstance(given, Mapping):
+        return Study.from_mapping(given)
+    if isinstance(given, str | os.PathLike):
+        return Study.from_toml(Path(given))
+    raise ConfigError(
+        f"A study cannot be made from an object of type {type(given).__name__}.",
+        "Give a Study, a dict of its tables, or the path of a study file.",
+    )
 
 
 def value_of(config: Config, key: str) -> Any:

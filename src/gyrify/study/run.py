@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack
 from pathlib import Path
@@ -15,7 +15,7 @@ from gyrify.store.faults import storage_faults
 from gyrify.store.files import fresh, refuse_link
 from gyrify.store.lock import run_lock
 from gyrify.study.book import Book
-from gyrify.study.definition import Keep, Point, Study, require_keep
+from gyrify.study.definition import Keep, Point, Study, as_study, require_keep
 from gyrify.study.executors import dask_executor
 from gyrify.study.outcome import StudyObserver, StudyResult
 from gyrify.study.stored import RUNS
@@ -23,13 +23,15 @@ from gyrify.study.stored import RUNS
 STUDY_FILE: Final = "study.toml"
 
 
-def run_study(study: Study, folder: str | Path, **options: Any) -> StudyResult:
+def run_study(
+    study: Study | Mapping[str, Any] | str | os.PathLike[str], folder: str | Path, **options: Any
+) -> StudyResult:
     """Run a study; the same call again computes only what is not known yet.
 
     Parameters
     ----------
-    study : Study
-        What to run; ``study.toml`` in the folder keeps it.
+    study : Study, dict or path
+        What to run; a path is that of a study file. ``study.toml`` in the folder keeps it.
     folder : path
         Study folder.
     **options
@@ -39,7 +41,7 @@ def run_study(study: Study, folder: str | Path, **options: Any) -> StudyResult:
     -------
     StudyResult
     """
-    target = Path(folder)
+    study, target = as_study(study), Path(folder)
     with storage_faults(target, what="study"):
         target.mkdir(parents=True, exist_ok=True)
         partial_file = fresh(target / f"{STUDY_FILE}.partial")

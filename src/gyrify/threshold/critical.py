@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from gyrify.config import Config
+from gyrify.config import Config, ConfigLike, as_config
 from gyrify.errors import ConfigError
 from gyrify.limits import Watch
 from gyrify.threshold.parameters import PARAMETERS, Range, scan_values
@@ -20,7 +20,7 @@ TOLERANCE: dict[str, float] = {"stability": 1e-6, "visible": 0.01}
 
 
 def critical_growth(
-    config: Config,
+    config: ConfigLike,
     parameter: str = "growth.ratio",
     definition: Definition = "stability",
     range: Range | None = None,
@@ -36,8 +36,8 @@ def critical_growth(
 
     Parameters
     ----------
-    config : Config
-        All other parameters.
+    config : Config, dict or path
+        All other parameters; a path is that of a TOML file.
     parameter : str
         ``growth.ratio``, ``growth.time``, ``material.stiffness_ratio`` or ``geometry.cortical_thickness``.
     definition : {"stability", "visible"}
@@ -67,7 +67,7 @@ def critical_growth(
     LimitReachedError
         If a limit of the configuration is reached.
     """
-    begun = time.perf_counter()
+    begun, config = time.perf_counter(), as_config(config)
     _check(definition, level, tolerance)
     values = scan_values(config, parameter, range, points, definition == "visible")
     found = _find(config, parameter, definition, values, level, tolerance or TOLERANCE[definition])

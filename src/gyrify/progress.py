@@ -1,4 +1,4 @@
-"""Progress of a run: a live bar on a terminal, plain lines elsewhere, nothing when quiet."""
+"""Progress of a run on stderr: a live bar on a terminal, plain lines elsewhere."""
 
 from __future__ import annotations
 
@@ -8,11 +8,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from gyrify.cli.streams import complain
 from gyrify.metrics.gyrification import index_of
 
 if TYPE_CHECKING:
-    from gyrify.simulation import Observer, Progress
+    from gyrify.run import Observer, Progress
 
 # Seconds between two updates of the bar: the gyrification index is only computed for what is shown.
 _PAUSE = 0.1
@@ -20,16 +19,30 @@ _PAUSE = 0.1
 _PATIENCE = 60.0
 
 
+def _print(line: str) -> None:
+    print(line, file=sys.stderr, flush=True)
+
+
 @contextmanager
-def progress_observer(quiet: bool) -> Iterator[list[Observer]]:
-    """Observers to pass to a run."""
-    if quiet:
+def progress_observer(
+    is_shown: bool = True, tell: Callable[[str], None] = _print
+) -> Iterator[list[Observer]]:
+    """Observers to pass to a run, which show its progress inside a ``with`` block.
+
+    Parameters
+    ----------
+    is_shown : bool
+        Whether anything is to be shown at all.
+    tell : callable
+        Prints a line where there is no terminal.
+    """
+    if not is_shown:
         yield []
     elif sys.stderr.isatty():
         with _live_bar() as observer:
             yield [observer]
     else:
-        yield [_plain_lines()]
+        yield [_plain_lines(tell)]
 
 
 def _index(progress: Progress) -> float:
@@ -55,7 +68,7 @@ def _brief(progress: Progress) -> str:
     )
 
 
-def _plain_lines() -> Callable[[Progress], None]:
+def _plain_lines(tell: Callable[[str], None]) -> Callable[[Progress], None]:
     """A line at each tenth of growth, at the end, and at least every minute."""
     tenth, said = -1, time.monotonic()
 
@@ -64,7 +77,7 @@ def _plain_lines() -> Callable[[Progress], None]:
         reached, now = int(10.0 * progress.fraction + 1e-9), time.monotonic()
         if reached > tenth or now - said > _PATIENCE:
             tenth, said = reached, now
-            complain(f"{_describe(progress)}, about {progress.remaining_s:.0f} s left")
+            tell(f"{_describe(progress)}, about {progress.remaining_s:.0f} s left")
 
     return observe
 
