@@ -56,7 +56,9 @@ class KnownRun:
     def note(self) -> str:
         """What becomes of it, in one sentence."""
         if self.is_done:
-            return f"{self.folder} holds this run already, completed: nothing is computed.{self._other_versions}"
+            return (
+                f"{self.folder} holds this run already, completed: nothing is computed.{self._other_versions}"
+            )
         if self.status == "completed":
             return f"{self.folder} holds this run already, completed: its files are written again."
         return f"{self.folder} holds this run, which has not completed: it is continued."
@@ -96,7 +98,8 @@ def known_run(config: Config, folder: Path) -> KnownRun | None:
     stored, status = Config.from_toml(journal.meta("config")), journal.meta("status", "running")
     if stored.config_hash != config.config_hash:
         raise HistoryError(
-            f"The folder {folder} already holds a run of another configuration: {_differences(stored, config)}.",
+            f"The folder {folder} already holds a run of another configuration: "
+            f"{_differences(stored, config)}.",
             f"Continue that run with `gyrify resume {quote(str(folder))}`, replace it with --overwrite, "
             "or choose another folder.",
         )

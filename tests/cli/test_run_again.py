@@ -1,4 +1,4 @@
-"""The same run again: done already or continued; a configuration from standard input; a study given to run."""
+"""The same run again: done already or continued; configurations from elsewhere than a file."""
 
 from __future__ import annotations
 
@@ -64,14 +64,14 @@ def test_a_run_that_ended_early_is_continued(
     folder = tmp_path / "run"
     half_run(tiny, folder)
     assert main(["run", str(toml), "--out", str(folder)]) == 0
-    out, err = capsys.readouterr()
+    err = capsys.readouterr().err
     assert "has not completed: it is continued" in err
     assert "growth time 250 of 500" not in err  # that was known
     history = History.load(folder)
     assert (history.status, history.result_hash) == ("completed", simulate(tiny).result_hash)
 
 
-def test_limits_of_the_second_call_hold(toml: Path, tiny: Config, tmp_path: Path, capsys: Capture) -> None:
+def test_limits_of_the_second_call_hold(toml: Path, tiny: Config, tmp_path: Path) -> None:
     folder = tmp_path / "run"
     command = ["run", str(toml), "--out", str(folder), "--quiet"]
     assert main([*command, "--set", "limits.wall_time=1e-6"]) == 3
@@ -190,9 +190,7 @@ def test_python_takes_paths_and_tables(tiny: Config, toml: Path, tmp_path: Path)
 
 
 @pytest.mark.parametrize("is_terminal", [False, True])
-def test_progress_from_python(
-    tiny: Config, monkeypatch: pytest.MonkeyPatch, capsys: Capture, is_terminal: bool
-) -> None:
+def test_progress_from_python(tiny: Config, monkeypatch: pytest.MonkeyPatch, is_terminal: bool) -> None:
     stream = io.StringIO()
     monkeypatch.setattr(stream, "isatty", lambda: is_terminal, raising=False)
     monkeypatch.setitem(os.environ, "TERM", "xterm")

@@ -74,7 +74,7 @@ def test_a_name_with_dollars_is_no_formula(runs, tmp_path, words) -> None:
         ("stress", {"stress": "shear"}, "Choose one of: von_mises, mean, circumferential"),
         ("gi", {"stress": "mean"}, "no meaning for gi"),
         ("gi", {"width_mm": 20.0}, "60 to 300 mm"),
-        ("gi", {"compare": ["x"] * 8}, "a page holds 7 more"),
+        ("gi", {"compare": ["x"] * 8}, "a picture of gi holds at most 7 more"),
     ],
 )
 def test_what_cannot_be_drawn_is_refused(runs, what, options, message) -> None:

@@ -37,7 +37,8 @@ def animate(
     Parameters
     ----------
     out : Path, optional
-        File to write, .gif or .mp4 (needs gyrify[video]); by default growth.gif in the run folder.
+        File to write, .gif or .mp4 (needs gyrify[video]); by default growth.gif in the run folder, or
+        growth-FIELD.gif.
     field : str
         What colours the slice: its tissues, or a field of its cells.
     fps : str, optional
@@ -55,7 +56,8 @@ def animate(
 
     given = {"fps": number("--fps", fps), "seconds": number("--seconds", seconds)}
     chosen = {name: value for name, value in given.items() if value is not None}
-    target = out if out is not None else run_folder / "growth.gif"
+    name = "growth.gif" if field == "tissue" else f"growth-{field}.gif"
+    target = out if out is not None else run_folder / name
     with _interruptible(), _progress(quiet) as observe:
         write(run_folder, target, field=field, width=width, observe=observe, **chosen)
     size = target.stat().st_size

@@ -45,9 +45,7 @@ def as_config(given: ConfigLike) -> Config:
         )
     path = Path(given)
     if isinstance(given, str) and given in preset_names() and not path.exists():
-        raise ConfigError(
-            f'"{given}" is a preset, not a file.', f'Give Config.preset("{given}"), or a path.'
-        )
+        raise ConfigError(f'"{given}" is a preset, not a file.', f'Give Config.preset("{given}"), or a path.')
     if isinstance(given, str) and ("\n" in given or "=" in given) and not path.is_file():
         raise ConfigError(
             f'"{shorten(given)}" is not the path of a file.',

@@ -80,8 +80,8 @@ class Study:
         tables = toml_text.parse(toml_text.read_text(file), name)
         if _is_configuration(tables):
             raise ConfigError(
-                f"The file {shorten(str(file), toml_text.MAX_PATH)} describes one run, not a study: it has no "
-                "table [design].",
+                f"The file {shorten(str(file), toml_text.MAX_PATH)} describes one run, not a study: "
+                "it has no table [design].",
                 f"Run it with: gyrify run {quote(str(file))}",
             )
         return cls.from_mapping(tables, file.parent)
@@ -105,7 +105,7 @@ class Study:
         if _is_configuration(tables):
             raise ConfigError(
                 "This describes one run, not a study: it has no table [design].",
-                "Run it with `gyrify run` or simulate; for many runs, write a study with [base] and [design].",
+                "Run it with `gyrify run`, or with simulate; a study has the tables [base] and [design].",
             )
         require_known(tables, ("base", "design", "keep"), "a study")
         study = cls(

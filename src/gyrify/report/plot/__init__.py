@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Final, Literal, get_args
 
 from matplotlib.figure import Figure
@@ -15,8 +16,10 @@ from gyrify.report.plot.indices import gi_plot
 from gyrify.report.plot.mode import mode_plot
 from gyrify.report.plot.shown import Run, Shown, show
 from gyrify.report.plot.stress import stress_plot
+from gyrify.report.plot.study import is_study, study_plot
 from gyrify.report.plot.style import HUES
 from gyrify.report.plot.thickness import thickness_plot
+from gyrify.store.history import History
 
 __all__ = ["KINDS", "Kind", "plot"]
 
@@ -33,6 +36,9 @@ _MAKERS: Final[dict[str, Callable[[Sequence[Shown], float | None], Figure]]] = {
 }
 # Pictures of what has no growth time, or all of them.
 _TIMELESS: Final = {"mode": "the onset", "dispersion": "every growth time"}
+# Curves of several runs share their axes, and more colours are not told apart.
+_CURVES: Final = ("gi", "energy", "dispersion")
+_MOST_RUNS: Final = 500
 _NARROWEST, _WIDEST = 60.0, 300.0
 
 
@@ -45,12 +51,13 @@ def plot(
     stress: str | None = None,
     width_mm: float | None = None,
 ) -> Figure:
-    """Draw a run.
+    """Draw a run, or the folded slices of a study.
 
     Parameters
     ----------
     run : History or path
-        The run, or its folder; it need not have completed, and the picture says so.
+        The run, or its folder; it need not have completed, and the picture says so. The folder of a study
+        gives a grid of its folded slices.
     what : str
         ``folded``: tissues, contour and exposed outline. ``gi``: gyrification index, sulcal depth and gyri
         against growth time. ``stress``: von Mises, mean and circumferential stress [kPa]. ``thickness``: that
@@ -58,7 +65,8 @@ def plot(
         in contact and lost in jumps [mJ/mm]. ``mode``: the mode along which stability was lost.
         ``dispersion``: exact growth at onset against mode number, with the onset of the run.
     compare : sequence of History or path, optional
-        Further runs to show beside it, at the same scale and in the same colours; at most seven.
+        Further runs to show beside it, at the same scale and in the same colours: any number in a grid of
+        slices, at most seven where curves share their axes (``gi``, ``energy``, ``dispersion``).
     at : float, optional
         Growth time [model units]; the nearest stored state is shown, and curves end there. The last state by
         default.
@@ -84,6 +92,8 @@ def plot(
     >>> figure = gyrify.plot("runs/reference-slice", "stress", at=300.0)  # doctest: +SKIP
     """
     _check(what, len(compare), at, stress, width_mm)
+    if not isinstance(run, History) and is_study(run):
+        return study_plot(Path(run), what, len(compare), at, width_mm)
     states = show([run, *compare], at)
     return stress_plot(states, width_mm, stress) if what == "stress" else _MAKERS[what](states, width_mm)
 
@@ -92,9 +102,11 @@ def _check(what: str, others: int, at: float | None, stress: str | None, width_m
     """Refuse what no picture can show, before a run is read."""
     if what not in KINDS:
         raise ConfigError(f"what = {what[:60]!r} is not a picture.", f"Choose one of: {', '.join(KINDS)}.")
-    if others >= len(HUES):
+    most = len(HUES) if what in _CURVES else _MOST_RUNS
+    if others >= most:
+        advice = "Compare fewer runs, or choose what = folded." if what in _CURVES else "Compare fewer runs."
         raise ConfigError(
-            f"compare has {others} runs: a page holds {len(HUES) - 1} more.", "Compare fewer runs."
+            f"compare has {others} runs: a picture of {what} holds at most {most - 1} more.", advice
         )
     if at is not None and what in _TIMELESS:
         raise ConfigError(

@@ -11,7 +11,7 @@ from matplotlib.patches import Patch
 from gyrify.report.figures import folded_figure
 from gyrify.report.page import COLOURS, OUTLINE, legend
 from gyrify.report.plot.shown import Shown
-from gyrify.report.plot.slices import BAR_MM, Label, board, draw_slice
+from gyrify.report.plot.slices import BAR_MM, Label, board, draw_slice, grid_columns
 from gyrify.report.plot.style import DOUBLE, SINGLE
 
 
@@ -20,7 +20,7 @@ def folded_plot(states: Sequence[Shown], width_mm: float | None) -> Figure:
     if len(states) == 1:
         return _one(states[0], width_mm or SINGLE)
     width = width_mm or DOUBLE
-    columns = 2 if width == SINGLE or len(states) in (2, 4) else 3
+    columns = grid_columns(len(states), width)
     frames = [(state.sheet.low, state.sheet.high) for state in states]
     labels = [Label((state.name, state.caption), state.note) for state in states]
     page = board(frames, labels, width, columns=columns)

@@ -10,7 +10,7 @@ from gyrify.errors import ConfigError
 from gyrify.report.mode import ModeLines, mode_figure, mode_handles, wave_words
 from gyrify.report.page import legend
 from gyrify.report.plot.shown import Shown
-from gyrify.report.plot.slices import BAR_MM, Label, board
+from gyrify.report.plot.slices import BAR_MM, Label, board, grid_columns
 from gyrify.report.plot.style import DOUBLE, SINGLE
 from gyrify.report.sheet import FloatArray, IntArray
 from gyrify.solve.stability import Onset
@@ -41,7 +41,7 @@ def mode_plot(states: Sequence[Shown], width_mm: float | None) -> Figure:
         )
         for state, onset in zip(states, onsets, strict=True)
     ]
-    columns = 2 if width == SINGLE or len(states) in (2, 4) else 3
+    columns = grid_columns(len(states), width)
     page = board([each.frame for each in lines], labels, width, columns=columns)
     for axes, each in zip(page.panels, lines, strict=True):
         each.draw(axes)

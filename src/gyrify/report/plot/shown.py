@@ -146,7 +146,7 @@ def _names(histories: Sequence[History]) -> list[str]:
     folders = [_folder_name(history) for history in histories]
     if not 0 < len(keys) <= _MOST_NAMED:
         return folders
-    return [", ".join(f"{_words(key)} {_short(table[key])}" for key in keys) for table in tables]
+    return [", ".join(f"{words_of(key)} {short(table[key])}" for key in keys) for table in tables]
 
 
 def _flat(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
@@ -156,7 +156,7 @@ def _flat(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
     return flat
 
 
-def _words(key: str) -> str:
+def words_of(key: str) -> str:
     """``growth.ratio`` becomes growth ratio; a last word that says enough stands alone."""
     section, _, name = key.rpartition(".")
     return (
@@ -166,7 +166,7 @@ def _words(key: str) -> str:
     )
 
 
-def _short(value: Any) -> str:
+def short(value: Any) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 

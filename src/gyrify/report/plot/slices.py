@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -13,11 +14,13 @@ from matplotlib.figure import Figure
 from gyrify.report.figures import draw_tissues
 from gyrify.report.page import CHARACTERS_PER_MM, COLOURS, LINE_MM, MARGIN_MM, OUTLINE, line, scale_bar
 from gyrify.report.plot.shown import Shown
-from gyrify.report.plot.style import SMALL_POINTS, add_axes, letter, new_figure, write
+from gyrify.report.plot.style import SINGLE, SMALL_POINTS, add_axes, letter, new_figure, write
 from gyrify.report.sheet import FloatArray, Sheet
 
 GAP_MM = 4.0
 BAR_MM = 9.0
+# Panels that are narrower have no room for their labels.
+_NARROWEST_MM = 24.0
 _NOTE = COLOURS["outline"]
 
 
@@ -31,7 +34,7 @@ class Label:
     def wrapped(self, width_mm: float) -> list[str]:
         """Every line, broken to a width that a letter narrows."""
         room = int(CHARACTERS_PER_MM * 1.25 * (width_mm - 5.0))
-        return [part for text in self.lines for part in textwrap.wrap(text, room)]
+        return [part for text in self.lines for part in textwrap.wrap(text, max(room, 8))]
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,6 +119,14 @@ def board(
         lefts.append(left)
     scale_bar(figure, low, high, y_mm=0.7 * BAR_MM)
     return Board(figure, panels, low, high, (wide, tall), bars_mm + BAR_MM, columns, lefts)
+
+
+def grid_columns(count: int, width_mm: float) -> int:
+    """Columns of a grid of slices: two or three, and more where there are many."""
+    if count <= 9:
+        return 2 if width_mm == SINGLE or count in (2, 4) else 3
+    most = int((width_mm - 2 * MARGIN_MM + GAP_MM) / (_NARROWEST_MM + GAP_MM))
+    return max(2, min(math.ceil(math.sqrt(count)), most))
 
 
 def common_frame(frames: Sequence[tuple[FloatArray, FloatArray]]) -> tuple[FloatArray, FloatArray]:

@@ -76,7 +76,14 @@ def write(figure: Figure, x_mm: float, y_mm: float, text: str, **style: Any) -> 
 
 def letter(figure: Figure, number: int, x_mm: float, y_mm: float) -> None:
     """Write the bold letter of a panel with its upper left corner at a place in mm."""
-    write(figure, x_mm, y_mm, "abcdefghijklmnopqrstuvwxyz"[number], fontweight="bold", fontsize=POINTS + 1)
+    write(figure, x_mm, y_mm, letter_of(number), fontweight="bold", fontsize=POINTS + 1)
+
+
+def letter_of(number: int) -> str:
+    """Letter of a panel: a to z, then aa, ab and so on."""
+    alphabet = "abcdefghijklmnopqrstuvwxyz"
+    first, last = divmod(number, len(alphabet))
+    return (letter_of(first - 1) if first else "") + alphabet[last]
 
 
 def add_legend(axes: Axes, **place: Any) -> None:
