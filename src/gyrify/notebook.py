@@ -5,12 +5,11 @@ from __future__ import annotations
 import base64
 import io
 from html import escape
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gyrify.errors import GyrifyError
+from gyrify.extras import require
 from gyrify.outputs import folded_picture
 from gyrify.store.fields import POINT_FIELDS, fields
 from gyrify.store.history import History
@@ -65,7 +64,7 @@ def to_dataframe(history: History) -> DataFrame:
 
     Raises
     ------
-    GyrifyError
+    ConfigError
         If pandas is not installed.
     """
     return _library("pandas").DataFrame(metrics_rows(history)).set_index("increment")
@@ -88,7 +87,7 @@ def to_pyvista(history: History, index: int = -1) -> UnstructuredGrid:
 
     Raises
     ------
-    GyrifyError
+    ConfigError
         If PyVista is not installed.
     HistoryError
         If there is no such state.
@@ -109,12 +108,7 @@ def _in_space(vectors: Any) -> Any:
 
 
 def _library(name: str) -> Any:
-    try:
-        return import_module(name)
-    except ImportError as error:
-        raise GyrifyError(
-            f"This needs {name}, which is not installed.", f"Install it with: pip install {name}"
-        ) from error
+    return require(name, "notebook", "This")
 
 
 def _lines(summary: dict[str, Any]) -> list[tuple[str, str]]:

@@ -46,7 +46,7 @@ def _is_script(match: re.Match[str]) -> bool:
 CHECKS: list[tuple[str, Callable[[re.Match[str]], bool]]] = [
     (r"make (?P<target>[\w-]+)(?: [A-Z]+=\S+)?", _makes),
     (r"python (?P<path>(?:benchmarks|docs|tools)[\w./-]*)(?: --?[\w-]+)*", _is_script),
-    (r"(?:\S*python3? -m )?pip install (?:-e )?'?(?:\.|gyrify)(?:\[(?P<extras>[\w,-]+)\])?'?", _installs),
+    (r"(?:\S*python3? -m )?pip install (?:-e )?'?\.(?:\[(?P<extras>[\w,-]+)\])?'?", _installs),
     (r"python3 -m venv (?P<venv>\S+)", _is_environment),
     (r"source (?P<venv>\S+)/bin/activate", _is_environment),
     (r"cd (?P<name>gyrify)", _is_clone),

@@ -73,7 +73,8 @@ def test_a_wrong_page_fails(tmp_path: Path) -> None:
     wrong = [
         Block(page, 1, "sh", "gyrify presets --no-such-option"),
         Block(page, 1, "sh", "make no-such-target"),
-        Block(page, 1, "sh", "pip install 'gyrify[no-such-extra]'"),
+        Block(page, 1, "sh", "pip install '.[no-such-extra]'"),
+        Block(page, 1, "sh", "pip install 'gyrify[notebook]'"),  # nothing is published
         Block(page, 1, "toml", "[growth]\nratoi = 3\n"),
         Block(page, 1, "python", "assert False"),
         Block(page, 1, "text", "never printed"),

@@ -96,7 +96,7 @@ def test_a_missing_library_is_named(
     history: History, monkeypatch: pytest.MonkeyPatch, library: str, method: str
 ) -> None:
     monkeypatch.setitem(sys.modules, library, None)
-    with pytest.raises(GyrifyError, match=f"pip install {library}"):
+    with pytest.raises(GyrifyError, match=f"pip install {library} .*notebook"):
         getattr(history, method)()
 
 

@@ -10,8 +10,8 @@ from pathlib import Path
 from types import FrameType
 from typing import Literal
 
+from gyrify.cli.options import number
 from gyrify.cli.overrides import Text
-from gyrify.cli.plot import number
 from gyrify.cli.stored import RunFolder
 from gyrify.cli.streams import print_json, say
 
@@ -37,7 +37,7 @@ def animate(
     Parameters
     ----------
     out : Path, optional
-        File to write, .gif or .mp4 (needs gyrify[video]); by default growth.gif in the run folder, or
+        File to write, .gif or .mp4 (which needs the extra video); by default growth.gif in the run folder, or
         growth-FIELD.gif.
     field : str
         What colours the slice: its tissues, or a field of its cells.
@@ -54,8 +54,8 @@ def animate(
     """
     from gyrify.report.animate import animate as write
 
-    given = {"fps": number("--fps", fps), "seconds": number("--seconds", seconds)}
-    chosen = {name: value for name, value in given.items() if value is not None}
+    given = {"fps": fps, "seconds": seconds}
+    chosen = {name: number(f"--{name}", text) for name, text in given.items() if text is not None}
     name = "growth.gif" if field == "tissue" else f"growth-{field}.gif"
     target = out if out is not None else run_folder / name
     with _interruptible(), _progress(quiet) as observe:

@@ -20,7 +20,13 @@ DEFAULT = Overrides()
 
 @app.command
 def show(
-    config: ConfigPath = None, /, *, overrides: Overrides = DEFAULT, toml: bool = False, json: bool = False
+    config: ConfigPath = None,
+    /,
+    *,
+    overrides: Overrides = DEFAULT,
+    toml: bool = False,
+    json: bool = False,
+    quiet: bool = False,  # noqa: ARG001 - for uniformity
 ) -> None:
     """Print every value with its unit and source.
 
@@ -30,6 +36,8 @@ def show(
         Print TOML that can be used as a configuration file.
     json : bool
         Print one JSON document.
+    quiet : bool
+        Show no progress.
     """
     from gyrify.config.table import rows
 
@@ -45,13 +53,22 @@ def show(
 
 
 @app.command
-def check(config: ConfigPath = None, /, *, overrides: Overrides = DEFAULT, json: bool = False) -> None:
+def check(
+    config: ConfigPath = None,
+    /,
+    *,
+    overrides: Overrides = DEFAULT,
+    json: bool = False,
+    quiet: bool = False,  # noqa: ARG001 - for uniformity
+) -> None:
     """Check a configuration, its mesh too, without running it.
 
     Parameters
     ----------
     json : bool
         Print one JSON document.
+    quiet : bool
+        Show no progress.
     """
     from gyrify.meshing import build_mesh
     from gyrify.validity import config_warnings
@@ -67,13 +84,15 @@ def check(config: ConfigPath = None, /, *, overrides: Overrides = DEFAULT, json:
 
 
 @app.command
-def schema(*, json: bool = True) -> None:  # noqa: ARG001
+def schema(*, json: bool = True, quiet: bool = False) -> None:  # noqa: ARG001 - for uniformity
     """Print the JSON Schema of the configuration format.
 
     Parameters
     ----------
     json : bool
         Accepted for uniformity: the schema is JSON anyway.
+    quiet : bool
+        Show no progress.
     """
     from gyrify.config.schema import json_schema
 

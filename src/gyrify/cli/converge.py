@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, STOPPED
+from gyrify.cli.options import cores, number
 from gyrify.cli.overrides import ConfigPath, Overrides, Text
 from gyrify.cli.streams import complain, print_json
 from gyrify.errors import ConfigError
@@ -58,13 +58,13 @@ def converge(
     resolved = overrides.resolve(config)
     subjects, largest = (
         None if of is None else _subjects(of),
-        0.02 if tolerance is None else _number(tolerance),
+        0.02 if tolerance is None else number("--tolerance", tolerance, "0.02"),
     )
     from gyrify.convergence import converge as study
     from gyrify.convergence.converge import default_folder
 
     folder = default_folder(resolved) if out is None else out
-    processes = (os.cpu_count() or 1) if workers is None else workers
+    processes = cores(workers)
 
     def tell(level: Level, done: int, total: int) -> None:
         if not quiet:
@@ -95,15 +95,6 @@ def _subjects(text: str) -> Sequence[Subject]:
                 f"--of {word[:60]} is not something to refine.", f"Choose among {', '.join(SUBJECTS)}."
             )
     return [known[word] for word in words]
-
-
-def _number(text: str) -> float:
-    from gyrify.config.numbers import parse_number
-
-    try:
-        return parse_number(text)
-    except ValueError as fault:
-        raise ConfigError(f"--tolerance {text[:60]!r} is not a number: {fault}.", "Try 0.02.") from fault
 
 
 def _described(level: Level) -> str:

@@ -11,6 +11,7 @@ from cyclopts import Parameter
 
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, STOPPED
 from gyrify.cli.interrupts import ends_are_interrupts
+from gyrify.cli.options import cores
 from gyrify.cli.streams import complain, print_json, say
 
 if TYPE_CHECKING:
@@ -75,7 +76,7 @@ def paper(
     begun = time.perf_counter()
     base = resolve_config(preset=preset, set_=set_)
     reading = Reading(Mechanics.of(base), require_gi(gi or preset_about(preset).gi_definition))
-    processes = _cores() if workers is None else workers
+    processes = cores(workers)
     _require(processes, minutes)
     seen = progress_of_points(quiet or readings)
     try:
@@ -172,11 +173,6 @@ def _ranking(candidates: Sequence[Any], ensembles: Sequence[Any], wall_s: float)
         for e in ensembles
     ]
     return {**best.as_dict(wall_s), "ranking": ranking, "seeds": seeds}
-
-
-def _cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _show(found: Reproduction) -> None:

@@ -11,6 +11,7 @@ from typing import Annotated, Final, Literal
 
 from cyclopts import Parameter
 
+from gyrify.cli.options import number
 from gyrify.cli.overrides import Text
 from gyrify.cli.streams import print_json, say
 from gyrify.errors import ConfigError
@@ -33,6 +34,7 @@ def plot(
     width: Text = None,
     dpi: int = 300,
     json: bool = False,
+    quiet: bool = False,  # noqa: ARG001 - for uniformity
 ) -> None:
     """Draw a run, or the folded slices of a study in a grid, at journal quality.
 
@@ -56,6 +58,8 @@ def plot(
         Pixels per inch of a .png, and of fields of colour in the others.
     json : bool
         Print what was written as one JSON document.
+    quiet : bool
+        Show no progress.
     """
     target = out if out is not None else run_folder / default_name(run_folder, what, at, compare, stress)
     _check(target, dpi)
@@ -69,9 +73,9 @@ def plot(
         run_folder,
         what,
         compare=compare,
-        at=number("--at", at),
+        at=None if at is None else number("--at", at),
         stress=stress,
-        width_mm=number("--width", width),
+        width_mm=None if width is None else number("--width", width),
     )
     with storage_faults(target.parent, f"The picture {target}"):
         save_figure(figure, target, dpi=dpi)
@@ -99,24 +103,6 @@ def _relative(other: Path, folder: Path) -> str:
         return str(other.resolve().relative_to(folder.resolve().parent))
     except ValueError:
         return str(other).strip("/.")
-
-
-def number(option: str, text: str | None) -> float | None:
-    """Number that an option was given, which may be a fraction; None where it was not given.
-
-    Raises
-    ------
-    ConfigError
-        If it is not a number.
-    """
-    from gyrify.config.numbers import parse_number
-
-    if text is None:
-        return None
-    try:
-        return parse_number(text)
-    except ValueError as fault:
-        raise ConfigError(f"{option} {text[:60]!r} is not a number: {fault}.", "Give a number.") from fault
 
 
 def _check(target: Path, dpi: int) -> None:

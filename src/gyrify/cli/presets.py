@@ -7,13 +7,15 @@ import dataclasses
 from gyrify.cli.streams import print_json, say
 
 
-def presets(*, json: bool = False) -> None:
+def presets(*, json: bool = False, quiet: bool = False) -> None:  # noqa: ARG001 - for uniformity
     """List the presets.
 
     Parameters
     ----------
     json : bool
         Print one JSON document.
+    quiet : bool
+        Show no progress.
     """
     from gyrify.config import Config, preset_about, preset_names
 

@@ -17,6 +17,7 @@ def report(
     *,
     out: Path | None = None,
     json: bool = False,
+    quiet: bool = False,  # noqa: ARG001 - for uniformity
 ) -> None:
     """Write a run or a study as one HTML file, to look at in any browser, without a network.
 
@@ -26,6 +27,8 @@ def report(
         File to write; by default report.html in the folder.
     json : bool
         Print the name and the size of the file as one JSON document.
+    quiet : bool
+        Show no progress.
     """
     target = folder / "report.html" if out is None else out
     if target.is_dir():

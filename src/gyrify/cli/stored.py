@@ -18,13 +18,21 @@ if TYPE_CHECKING:
 RunFolder = Annotated[Path, Parameter(name="RUN", help="Run folder.")]
 
 
-def verify(run_folder: RunFolder, /, *, json: bool = False) -> int:
+def verify(
+    run_folder: RunFolder,
+    /,
+    *,
+    json: bool = False,
+    quiet: bool = False,  # noqa: ARG001 - for uniformity
+) -> int:
     """Recheck a stored run from its files alone; exit code 1 if a check fails.
 
     Parameters
     ----------
     json : bool
         Print one JSON document.
+    quiet : bool
+        Show no progress.
     """
     from gyrify.verify import verify as recheck
 
@@ -47,6 +55,7 @@ def export(
     closing_radius: Text = None,
     gyrus_prominence: Text = None,
     json: bool = False,
+    quiet: bool = False,  # noqa: ARG001 - for uniformity
 ) -> None:
     """Write states of a run for another program, or measure them again.
 
@@ -66,6 +75,8 @@ def export(
         Smallest prominence of a gyrus [mm], with --format metrics; by default that of the run.
     json : bool
         Print the names of the files as one JSON document.
+    quiet : bool
+        Show no progress.
     """
     from gyrify.store import History
     from gyrify.store.export import export as write

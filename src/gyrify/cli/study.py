@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Annotated
@@ -11,6 +10,7 @@ from cyclopts import Parameter
 
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, STOPPED
 from gyrify.cli.interrupts import ends_are_interrupts
+from gyrify.cli.options import cores
 from gyrify.cli.overrides import STANDARD_INPUT
 from gyrify.cli.streams import complain, print_json, say
 from gyrify.errors import ConfigError
@@ -59,7 +59,7 @@ def study(
 
     described = _described(file, out)
     folder = Path("studies") / file.stem if out is None else out
-    processes = _cores() if workers is None else workers
+    processes = cores(workers)
     try:
         with ends_are_interrupts():
             with progress_of_points(quiet) as observer:
@@ -95,13 +95,6 @@ def _described(file: Path, out: Path | None) -> Study:
     if out is None:
         raise ConfigError("A study from standard input has no name for its folder.", "Add --out DIR.")
     return Study.from_mapping(toml_text.parse(toml_text.read_standard_input(), "Standard input"))
-
-
-def _cores() -> int:
-    """Cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def _draw(folder: Path) -> Sequence[Path]:

@@ -30,6 +30,7 @@ def table(
     limit: int | None = None,
     csv: bool = False,
     json: bool = False,
+    quiet: bool = False,  # noqa: ARG001 - for uniformity
 ) -> None:
     """Show the results of a study, one row per run.
 
@@ -47,6 +48,8 @@ def table(
         Print CSV; all columns unless some are named.
     json : bool
         Print one JSON document; all columns unless some are named.
+    quiet : bool
+        Show no progress.
     """
     from gyrify.study.query import query_results
 

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from gyrify.cli.codes import COMPLETED, STOPPED
+from gyrify.cli.options import cores, number
 from gyrify.cli.overrides import ConfigPath, Overrides, Text
 from gyrify.cli.streams import complain, print_json, say
-from gyrify.errors import ConfigError, LimitReachedError
+from gyrify.errors import LimitReachedError
 
 if TYPE_CHECKING:
     from gyrify.threshold import Threshold
@@ -28,7 +29,9 @@ def threshold(
     range_: Annotated[tuple[str, str] | None, Parameter(name="--range")] = None,
     level: Text = None,
     points: int | None = None,
+    workers: int | None = None,
     json: bool = False,
+    quiet: bool = False,
 ) -> int:
     """Find where the smooth slice loses stability, or where folds are seen.
 
@@ -45,16 +48,25 @@ def threshold(
         Gyrification index (closing) that counts as folded; 1.005 by default.
     points : int, optional
         Values to scan.
+    workers : int, optional
+        Processes for the runs of the definition visible; by default the number of cores.
     json : bool
         Print one JSON document.
+    quiet : bool
+        Show no progress.
     """
     from gyrify.threshold import critical_growth
 
-    ends = None if range_ is None else (_number("--range", range_[0]), _number("--range", range_[1]))
-    folded = 1.005 if level is None else _number("--level", level)
+    ends = None if range_ is None else (number("--range", range_[0]), number("--range", range_[1]))
+    folded = 1.005 if level is None else number("--level", level)
     resolved = overrides.resolve(config)
+    processes = 1 if definition == "stability" and workers is None else cores(workers)
     try:
-        found = critical_growth(resolved, parameter, definition, ends, level=folded, points=points)
+        if not quiet:
+            complain(f"Scanning {parameter} ...")
+        found = critical_growth(
+            resolved, parameter, definition, ends, level=folded, points=points, workers=processes
+        )
     except LimitReachedError as limit:
         complain(str(limit))
         if json:
@@ -67,15 +79,6 @@ def threshold(
     else:
         _report(found)
     return COMPLETED
-
-
-def _number(option: str, text: str) -> float:
-    from gyrify.config.numbers import parse_number
-
-    try:
-        return parse_number(text)
-    except ValueError as fault:
-        raise ConfigError(f"{option} {text[:60]!r} is not a number: {fault}.", "Give a number.") from fault
 
 
 def _report(found: Threshold) -> None:

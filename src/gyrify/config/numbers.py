@@ -44,3 +44,16 @@ def parse_number(text: str) -> float:
 def is_fraction(value: object) -> bool:
     """Tell whether a value is text that can only be meant as a fraction."""
     return isinstance(value, str) and "/" in value
+
+
+def number_advice(text: str) -> str:
+    """Say how text that is almost a number is to be written; empty where it is not clear what is meant."""
+    plain = text.strip()
+    if re.fullmatch(r"[+-]?[0-9]+,[0-9]+", plain, re.ASCII):
+        return f"Write a decimal point: {plain.replace(',', '.')}."
+    found = re.fullmatch(rf"({_DECIMAL})\s*([^\W\d_]\S*|[%°µ]\S*)", plain)
+    if found and len(plain) <= MAX_LENGTH:
+        return f"Write the number without its unit: {found[1]}."
+    if re.match(NUMBER_PATTERN, plain, re.ASCII) and "/" not in plain:
+        return "Write the number without quotes."
+    return ""

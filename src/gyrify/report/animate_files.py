@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from importlib import import_module
 from itertools import accumulate
 from pathlib import Path
 from typing import Any, Final
 
 from gyrify.errors import GyrifyError
+from gyrify.extras import require
 from gyrify.report.animate_scene import Pixels
 
 # Colours of a GIF: enough for smooth edges beside a map of colours, few enough for small files.
@@ -158,13 +158,7 @@ def video_encoder() -> Any:
     GyrifyError
         If it is not installed.
     """
-    try:
-        return import_module("imageio_ffmpeg")
-    except ImportError as error:
-        raise GyrifyError(
-            "MP4 needs an encoder, which is not installed.",
-            "Install it with: pip install 'gyrify[video]', or write a .gif.",
-        ) from error
+    return require("imageio_ffmpeg", "video", "An MP4 animation", "imageio-ffmpeg")
 
 
 def watched(

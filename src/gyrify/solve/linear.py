@@ -76,7 +76,7 @@ def linear_solver(name: SolverName = "auto") -> LinearSolver:
         if name == "pardiso":
             raise ConfigError(
                 "solver.linear_solver = 'pardiso', but PARDISO is not installed.",
-                "Install it with pip install 'gyrify[fast]' (x86-64 only), or choose 'superlu' or 'auto'.",
+                "Install it with: pip install mkl (x86-64 only), or choose 'superlu' or 'auto'.",
             ) from missing
         return SuperLU()
 

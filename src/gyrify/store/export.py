@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Sequence
-from importlib import import_module
 from pathlib import Path
 from typing import Any, Final, Literal, get_args
 from xml.etree import ElementTree
@@ -14,6 +13,7 @@ import numpy as np
 
 from gyrify.config.run_sections import OutputField
 from gyrify.errors import ConfigError, HistoryError
+from gyrify.extras import require
 from gyrify.solve.types import FloatArray
 from gyrify.store.faults import storage_faults
 from gyrify.store.fields import POINT_FIELDS, fields
@@ -220,10 +220,4 @@ def _numbered(path: Path, states: list[int]) -> list[Path]:
 
 
 def _meshio(format: str) -> Any:
-    try:
-        return import_module("meshio")
-    except ImportError as error:
-        raise ConfigError(
-            f"Exporting {format} needs the package meshio, which is not installed.",
-            "Install it with: pip install 'gyrify[export]'.",
-        ) from error
+    return require("meshio", "export", f"An export as {format}")

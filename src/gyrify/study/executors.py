@@ -9,6 +9,7 @@ from typing import Final
 
 from gyrify.config import Config
 from gyrify.errors import ConfigError, GyrifyError
+from gyrify.extras import require
 from gyrify.pool import each
 from gyrify.study.solve import Outcome, lost_point
 
@@ -85,14 +86,9 @@ def dask_executor(address: str) -> Iterator[Executor]:
     ConfigError
         If dask is not installed, or no scheduler answers.
     """
+    distributed = require("distributed", "cluster", "A dask scheduler")
     try:
-        from distributed import Client
-    except ImportError as missing:
-        raise ConfigError(
-            "A scheduler needs dask.distributed, which is not installed.", "pip install 'gyrify[cluster]'"
-        ) from missing
-    try:
-        client = Client(address, timeout=_PATIENCE, set_as_default=False)
+        client = distributed.Client(address, timeout=_PATIENCE, set_as_default=False)
     except (OSError, ValueError, TypeError) as fault:
         raise ConfigError(
             f"No dask scheduler answers at {address[:120]}: {' '.join(str(fault).split())[:160]}.",

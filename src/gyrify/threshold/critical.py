@@ -10,6 +10,7 @@ from itertools import pairwise
 from gyrify.config import Config, ConfigLike, as_config
 from gyrify.errors import ConfigError
 from gyrify.limits import Watch
+from gyrify.pool import MAX_WORKERS
 from gyrify.threshold.parameters import PARAMETERS, Range, scan_values
 from gyrify.threshold.result import Crossing, Definition, Scanned, Threshold, main_crossing
 from gyrify.threshold.stability import StabilityScan
@@ -28,6 +29,7 @@ def critical_growth(
     level: float = 1.005,
     points: int | None = None,
     tolerance: float | None = None,
+    workers: int = 1,
 ) -> Threshold:
     """Find the critical value of one parameter.
 
@@ -52,6 +54,8 @@ def critical_growth(
         Values to scan.
     tolerance : float, optional
         Relative width to which a crossing is refined; 1e-6 (stability) or 0.01 (visible) by default.
+    workers : int
+        Processes for the runs of the scan (`visible`); the states of `stability` follow one another, in one.
 
     Returns
     -------
@@ -68,9 +72,9 @@ def critical_growth(
         If a limit of the configuration is reached.
     """
     begun, config = time.perf_counter(), as_config(config)
-    _check(definition, level, tolerance)
+    _check(definition, level, tolerance, workers)
     values = scan_values(config, parameter, range, points, definition == "visible")
-    found = _find(config, parameter, definition, values, level, tolerance or TOLERANCE[definition])
+    found = _find(config, parameter, definition, values, level, tolerance or TOLERANCE[definition], workers)
     return replace(found, wall_s=time.perf_counter() - begun)
 
 
@@ -81,11 +85,14 @@ def _find(
     values: Sequence[float],
     level: float,
     tolerance: float,
+    workers: int,
 ) -> Threshold:
     """Scan, and refine every change between neighbours of known state."""
     visible, watch = definition == "visible", Watch(config.limits.wall_time, config.limits.memory)
     scan = (
-        VisibleScan(config, parameter, level, watch) if visible else StabilityScan(config, parameter, watch)
+        VisibleScan(config, parameter, level, watch, workers)
+        if visible
+        else StabilityScan(config, parameter, watch)
     )
     scanned = scan.scan(values)
     crossings = tuple(
@@ -137,7 +144,11 @@ def _edges(
     return notes
 
 
-def _check(definition: str, level: float, tolerance: float | None) -> None:
+def _check(definition: str, level: float, tolerance: float | None, workers: int) -> None:
+    if not 1 <= workers <= MAX_WORKERS:
+        raise ConfigError(
+            f"workers = {workers} is out of range (1 to {MAX_WORKERS}).", "Try the number of cores."
+        )
     if definition not in TOLERANCE:
         raise ConfigError(f"definition = {definition[:60]!r} is unknown.", "Choose stability or visible.")
     if not 1.0 < level < 10.0:
