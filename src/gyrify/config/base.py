@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic.config import JsonDict
 
-from gyrify.config.faults import config_error
+from gyrify.config.faults import config_error, nearest
 from gyrify.config.numbers import is_fraction, parse_number
+from gyrify.config.words import show
+from gyrify.errors import ConfigError
 
 
 def setting(
@@ -73,6 +76,37 @@ class Section(_Model):
         if not isinstance(data, dict):
             return data
         return {key: _normalised(value) for key, value in data.items() if not cls._is_unset(key, value)}
+
+    def __setattr__(self, name: str, value: object) -> None:
+        """Refuse, and say how a configuration with another value is made."""
+        if name.startswith("_"):
+            super().__setattr__(name, value)
+            return
+        raise self._refusal(name, f"{name} cannot be set", show(value))
+
+    def __delattr__(self, name: str) -> None:
+        """Refuse, as setting is."""
+        raise self._refusal(name, f"{name} cannot be deleted", "...")
+
+    def _refusal(self, name: str, what: str, value: str) -> ConfigError:
+        kind = type(self)
+        if name not in kind.model_fields:
+            close = nearest(name, kind.model_fields)
+            return ConfigError(
+                f"{what}: {kind.__name__} has no such value.", f"Did you mean {close}?" * bool(close)
+            )
+        section = kind.section_name()
+        key = f"{section}.{name}" if section else name
+        return ConfigError(
+            f"{key} cannot be changed: a configuration never changes once it is made.",
+            f'Make another one: config = config.with_overrides({{"{key}": {value}}}).',
+        )
+
+    @classmethod
+    def section_name(cls) -> str:
+        """Name of the section in a configuration; empty for the configuration itself."""
+        name = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", cls.__name__).lower()
+        return {"config": "", "mesh_settings": "mesh"}.get(name, name)
 
     @classmethod
     def _is_unset(cls, key: object, value: object) -> bool:

@@ -3,17 +3,28 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from gyrify.config.numbers import is_fraction, parse_number
+from gyrify.config.numbers import is_fraction, number_advice, parse_number
 from gyrify.config.words import allowed, choices, extra, is_number, shorten, show
 from gyrify.errors import ConfigError
 
 MAX_FAULTS: Final = 10
+# What users write for a key, as letters alone.
+_OTHER_NAMES: Final = {
+    "thickness": "geometry.cortical_thickness",
+    "corticalthickness": "geometry.cortical_thickness",
+    "stiffness": "material.stiffness_ratio",
+    "time": "growth.duration",
+    "growthtime": "growth.duration",
+    "ratio": "growth.ratio",
+    "walltime": "limits.wall_time",
+}
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
@@ -84,19 +95,43 @@ def unknown_key(model: type[BaseModel], owner: type[BaseModel], name: str) -> st
     str
         One or two sentences.
     """
-    prefix, _, key = name.rpartition(".")
-    elsewhere = {
-        field: f"{section}.{field}"
-        for section, kind in sections(model).items()
-        for field in kind.model_fields
-    }
-    close = "" if key in elsewhere else nearest(key, owner.model_fields)
-    if close:
-        suggestion = f"{shorten(prefix)}.{close}" if prefix else close
-    else:
-        suggestion = elsewhere.get(nearest(key, elsewhere), "")
+    suggestion = suggested_key(model, owner, name)
     hint = f"Did you mean {suggestion}?" if suggestion else f"Known: {', '.join(owner.model_fields)}."
     return f"{shorten(name)} is not a known key. {hint}"
+
+
+def suggested_key(model: type[BaseModel], owner: type[BaseModel], name: str) -> str:
+    """Dotted key that is most likely meant, or an empty text.
+
+    The same letters come first (``Growth.Ratio``, ``growth_ratio``), then the same key in another section,
+    then a whole word of a key (``thickness``), and last what is written alike.
+    """
+    prefix, _, key = name[:120].rpartition(".")
+    known = [
+        *(field for field in model.model_fields if field not in sections(model)),
+        *(f"{name}.{field}" for name, kind in sections(model).items() for field in kind.model_fields),
+    ]
+    own = [f"{prefix}.{field}" if prefix else field for field in owner.model_fields]
+    if _letters(name) in _OTHER_NAMES and _OTHER_NAMES[_letters(name)] in known:
+        return _OTHER_NAMES[_letters(name)]
+    for candidates in ([*own, *known], known):
+        same = [it for it in candidates if _letters(it) == _letters(name)]
+        if same:
+            return same[0]
+    last = [it for it in known if _letters(it.rpartition(".")[2]) == _letters(key)]
+    close = nearest(key.lower(), owner.model_fields)
+    words = [it for it in known if len(key) > 4 and key.lower() in it.rpartition(".")[2].split("_")]
+    if last or words:
+        return (last or words)[0]
+    if close:
+        return f"{shorten(prefix)}.{close}" if prefix else close
+    ends = {it.rpartition(".")[2]: it for it in known}
+    return ends.get(nearest(key.lower(), ends), "")
+
+
+def _letters(name: str) -> str:
+    """A key without what separates its words."""
+    return re.sub(r"[^a-z0-9]", "", name.lower())
 
 
 def _locate(model: type[BaseModel], path: Sequence[str]) -> tuple[type[BaseModel], FieldInfo | None]:
@@ -127,7 +162,7 @@ def _advice(field: FieldInfo, value: object) -> str:
         except ValueError as reason:
             return f"Mind that {reason}."
     if is_number(field) and isinstance(value, str) and value not in choices(field):
-        return "Write a number without quotes." if value.strip()[:1].isdigit() else _default(field)
+        return number_advice(value, extra(field, "unit")) or _default(field)
     words = [word for word in choices(field) if isinstance(word, str)]
     close = nearest(value.lower(), words) if isinstance(value, str) else ""
     return f'Did you mean "{close}"?' if close else _default(field)

@@ -46,13 +46,25 @@ def is_fraction(value: object) -> bool:
     return isinstance(value, str) and "/" in value
 
 
-def number_advice(text: str) -> str:
-    """Say how text that is almost a number is to be written; empty where it is not clear what is meant."""
+def number_advice(text: str, unit: str = "") -> str:
+    """Say how text that is almost a number is to be written; empty where it is not clear what is meant.
+
+    Parameters
+    ----------
+    text : str
+        What was written.
+    unit : str, optional
+        Unit in which the number is expected.
+    """
     plain = text.strip()
+    if len(plain) > MAX_LENGTH:
+        return ""
     if re.fullmatch(r"[+-]?[0-9]+,[0-9]+", plain, re.ASCII):
         return f"Write a decimal point: {plain.replace(',', '.')}."
-    found = re.fullmatch(rf"({_DECIMAL})\s*([^\W\d_]\S*|[%°µ]\S*)", plain)
-    if found and len(plain) <= MAX_LENGTH:
+    found = re.fullmatch(rf"({_DECIMAL})\s*([^\W\d_]\S*|µ\S*)", plain)
+    if found and unit and found[2] != unit:
+        return f"Write the number alone, in {unit}."
+    if found:
         return f"Write the number without its unit: {found[1]}."
     if re.match(NUMBER_PATTERN, plain, re.ASCII) and "/" not in plain:
         return "Write the number without quotes."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import stat
 import sys
 import tomllib
@@ -10,6 +11,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Final
 
+from gyrify.config.numbers import MAX_LENGTH, NUMBER_PATTERN, number_advice
 from gyrify.config.words import shorten
 from gyrify.errors import ConfigError
 
@@ -101,10 +103,28 @@ def parse(text: str, name: str = "The configuration") -> dict[str, Any]:
         reason = shorten(" ".join(str(error).split()), MAX_REASON)
     except ValueError:
         reason = "it holds a number of too many digits"
+    hint = _line_advice(text, reason)
     file_hint = (
         " To read a file, use Config.load." if text.strip().endswith(".toml") and "\n" not in text else ""
     )
-    raise ConfigError(f"{name} is not valid TOML: {reason}.", f"Mend or complete that line.{file_hint}")
+    raise ConfigError(
+        f"{name} is not valid TOML: {reason}.", f"{hint or 'Correct or complete that line.'}{file_hint}"
+    )
+
+
+def _line_advice(text: str, reason: str) -> str:
+    """What is wrong with the line that a reason names, where a number is written as TOML does not."""
+    place = re.search(r"at line (\d+)", reason)
+    lines = text.splitlines()
+    if place is None or not 0 < int(place[1]) <= len(lines):
+        return ""
+    _, equals, value = lines[int(place[1]) - 1].partition("=")
+    value = value.partition("#")[0].strip()
+    if not equals or len(value) > MAX_LENGTH:
+        return ""
+    if re.match(NUMBER_PATTERN, value, re.ASCII) and "/" in value:
+        return f'Write a fraction in quotes: "{value}".'
+    return number_advice(value)
 
 
 def literal(value: Any) -> str:
