@@ -16,6 +16,7 @@ from gyrify.store.history import History
 from gyrify.summary import metrics_rows, summarise
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
     from pandas import DataFrame
     from pyvista import UnstructuredGrid
 
@@ -47,6 +48,13 @@ def html(history: History) -> str:
         f'<img alt="The slice at the end of the run" src="data:image/png;base64,{picture}">'
         f"<table><caption>{escape(repr(history))}</caption>{rows}</table></div>"
     )
+
+
+def plot(history: Any, what: str, **options: Any) -> Figure:
+    """Draw a run, as `gyrify.plot` does."""
+    from gyrify.report.plot import plot as draw
+
+    return draw(history, what, **options)  # type: ignore[arg-type]
 
 
 def to_dataframe(history: History) -> DataFrame:

@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 import math
 import os
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
+from gyrify.config import Config
+from gyrify.config.table import rows
 from gyrify.measuring import (
     earlier_measures,
     measure_state,
@@ -24,6 +27,7 @@ from gyrify.onset.visible import visible_time
 from gyrify.solve.stability import StabilityChange
 from gyrify.store.files import fresh
 from gyrify.store.history import History
+from gyrify.units import UNITS
 from gyrify.validity import config_warnings, run_warnings
 
 __all__ = [
@@ -34,6 +38,23 @@ __all__ = [
     "write_metrics",
     "write_summary",
 ]
+# Parameters that every summary tells.
+_TOLD: Final = frozenset(
+    {
+        "geometry.shape",
+        "geometry.cortical_thickness",
+        "material.stiffness_ratio",
+        "growth.ratio",
+        "growth.rate",
+        "growth.duration",
+        "dissipation.kind",
+        "dissipation.number",
+        "mesh.n_around",
+        "mesh.n_layers",
+        "mesh.element",
+        "solver.increments",
+    }
+)
 
 
 def summarise(history: History) -> dict[str, Any]:
@@ -91,10 +112,30 @@ def _summary(history: History, measures: Measures) -> dict[str, Any]:
             },
             "versions": history.versions,
             "seed": history.config.seed,
+            "parameters": _parameters(history.config),
         }
     )
+    summary["units"] = {name: UNITS[name] for name in _flat_names(summary) if name in UNITS}
     summary["warnings"] = [*config_warnings(history.config), *run_warnings(history, summary)]
     return summary
+
+
+def _parameters(config: Config) -> dict[str, Any]:
+    """What a reader asks for first, and every other value that is not the default; by dotted key."""
+    return {
+        row.key: list(row.value) if isinstance(row.value, tuple) else row.value
+        for row in rows(config)
+        if row.key in _TOLD or (row.default is not None and row.value != row.default)
+    }
+
+
+def _flat_names(table: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
+    """Names of the quantities of a summary, as ``metrics.csv`` and ``results.parquet`` have them."""
+    for key, value in table.items():
+        if isinstance(value, dict) and key not in ("parameters", "versions"):
+            yield from _flat_names(value, f"{prefix}{key}_")
+        else:
+            yield f"{prefix}{key}"
 
 
 def _onset(history: History, visible: float | None) -> dict[str, Any] | None:

@@ -16,7 +16,7 @@ SOURCE = Path(gyrify.__file__).parent
 
 # Each layer may import from the layers above it in this list, and from its own package.
 LAYERS = [
-    {"errors", "versions"},
+    {"errors", "versions", "markup"},
     {"config", "physics", "mesh", "theory", "limits"},
     {"energy", "metrics"},
     {"solve", "meshing", "phenotype"},
@@ -31,7 +31,7 @@ MAY_IMPORT = {
     "theory": {"errors"},
     "energy": {"physics", "errors"},
     "solve": {"energy", "physics", "mesh", "errors"},
-    "metrics": {"mesh", "errors"},
+    "metrics": {"mesh", "errors", "markup"},
     "phenotype": {"metrics", "config", "errors"},
 }
 # Imports inside functions: (importer, imported), and why. Anything else is written at the top of its file.

@@ -14,6 +14,7 @@ from gyrify.config import Config
 from gyrify.convergence.measured import METRICS
 from gyrify.convergence.plan import Subject, contour_nodes, resolution
 from gyrify.convergence.verdict import RULE, Verdict, judge
+from gyrify.markup import html_rows
 
 
 @dataclass(frozen=True)
@@ -123,7 +124,7 @@ class Family:
         }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Convergence:
     """A study of convergence.
 
@@ -151,6 +152,22 @@ class Convergence:
         return next(
             (status for status in ("failed", "interrupted", "stopped") if status in found), "completed"
         )
+
+    def __repr__(self) -> str:
+        told = []
+        for family in self.families:
+            verdicts = [verdict.converged for verdict in family.verdicts.values()]
+            told.append(f"{family.subject}: {sum(v is True for v in verdicts)} of {len(verdicts)} metrics")
+        within = f"within {self.tolerance:g}"
+        return f"Convergence({self.status}; converged {within} by refinement of {', '.join(told)})"
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (family.subject, key, verdict.sentence)
+            for family in self.families
+            for key, verdict in family.verdicts.items()
+        ]
+        return html_rows(repr(self), rows, ("refined", "metric", "verdict"))
 
     def family(self, subject: Subject) -> Family:
         """The family of a subject.

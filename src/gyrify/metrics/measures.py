@@ -6,8 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from gyrify.markup import html_rows
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Measures:
     """Metrics of one deformed state; lengths in mm.
 
@@ -53,6 +55,18 @@ class Measures:
     min_gap: float
     self_intersecting: bool
 
+    def __repr__(self) -> str:
+        gyri = f"{self.n_gyri} {'gyrus' if self.n_gyri == 1 else 'gyri'}"
+        return (
+            f"Measures(GI {self.gi_closing:.3f} (closing of {self.closing_radius:g} mm), {self.gi_hull:.3f} "
+            f"(hull), {self.gi_exposed:.3f} (exposed); {gyri}, "
+            f"sulci up to {self.sulcal_depth_max:.2f} mm deep, "
+            f"cortex {self.thickness_crown:.2f} mm at crowns and {self.thickness_fundus:.2f} mm at fundi)"
+        )
+
+    def _repr_html_(self) -> str:
+        return html_rows("Measures", ((name, _shown(value)) for name, value in self.flat().items()))
+
     def as_dict(self) -> dict[str, Any]:
         """Return the metrics nested and named as in ``summary.json``."""
         return {
@@ -86,3 +100,7 @@ def _flatten(nested: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
             _flatten(value, f"{prefix}{key}_") if isinstance(value, Mapping) else {f"{prefix}{key}": value}
         )
     return flat
+
+
+def _shown(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

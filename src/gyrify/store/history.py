@@ -22,13 +22,14 @@ from gyrify.solve.types import FloatArray
 from gyrify.store.database import RERUN
 from gyrify.store.journal import Journal
 from gyrify.store.lock import has_owner
+from gyrify.store.views import Views
 
 if TYPE_CHECKING:
     from pandas import DataFrame
     from pyvista import UnstructuredGrid
 
 
-class History:
+class History(Views):
     """States of a run in the order of growth; increment 0 is the reference state.
 
     Parameters
@@ -273,17 +274,19 @@ class History:
 
         return to_dataframe(self)
 
-    def to_pyvista(self, index: int = -1) -> UnstructuredGrid:
+    def to_pyvista(self, index: int = -1, *, time: float | None = None) -> UnstructuredGrid:
         """A state as a PyVista grid with all its fields; see `gyrify.notebook`.
 
         Parameters
         ----------
         index : int
             State; negative numbers count from the end.
+        time : float, optional
+            Growth time, in place of the index; see `at`.
         """
         from gyrify.notebook import to_pyvista
 
-        return to_pyvista(self, index)
+        return to_pyvista(self, index if time is None else self.at(time))
 
     def _repr_html_(self) -> str:
         from gyrify.notebook import html

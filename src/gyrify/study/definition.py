@@ -43,7 +43,7 @@ class Point:
         return self.config.config_hash[:KEY_DIGITS]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Study:
     """What to run.
 
@@ -60,6 +60,10 @@ class Study:
     base: Config
     design: Design
     keep: Keep = "final"
+
+    def __repr__(self) -> str:
+        varied = ", ".join(parameter.key for parameter in self.design.parameters) or "points written out"
+        return f"Study({self.design.kind} of {varied}: {len(self.points())} points, keep {self.keep})"
 
     @classmethod
     def from_toml(cls, path: str | Path) -> Study:

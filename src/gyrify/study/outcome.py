@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
+from gyrify.markup import html_rows
 from gyrify.study.archive import Record
 from gyrify.study.definition import Point
 from gyrify.study.results import read_results
@@ -44,10 +45,21 @@ class StudyProgress:
     remaining_s: float | None
 
 
+# Quantities and rows that a notebook shows.
+_SHOWN: Final = ("phenotype", "gi_closing", "n_gyri", "sulcal_depth_mm_max")
+_MOST_ROWS: Final = 50
+
+
+def _cell(value: object) -> str:
+    if value is None:
+        return "-"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
 StudyObserver = Callable[[StudyProgress], None]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class StudyResult:
     """A study that has ended.
 
@@ -70,6 +82,17 @@ class StudyResult:
     records: dict[str, Record]
     computed: int
     wall_s: float
+
+    def __repr__(self) -> str:
+        done = f"{len(self.points) - len(self.failures)} of {len(self.points)} runs completed"
+        return f"StudyResult({self.status}: {done}, {self.computed} of them computed now, in {self.folder})"
+
+    def _repr_html_(self) -> str:
+        table = self.table
+        names = ["key", "status", *(name for name in table.column_names if "." in name), *_SHOWN]
+        chosen = table.select([name for name in names if name in table.column_names]).slice(0, _MOST_ROWS)
+        rows = ([_cell(value) for value in row.values()] for row in chosen.to_pylist())
+        return html_rows(repr(self), rows, chosen.column_names)
 
     @property
     def failures(self) -> dict[str, str]:

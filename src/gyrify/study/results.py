@@ -16,6 +16,7 @@ from gyrify.store.files import fresh
 from gyrify.study.archive import Record
 from gyrify.study.definition import Point, value_of
 from gyrify.study.parameter import require_variable
+from gyrify.units import unit_of
 
 if TYPE_CHECKING:
     from pyarrow import DataType, Table
@@ -24,7 +25,16 @@ RESULTS: Final = "results.parquet"
 TIMINGS: Final = "timings.csv"
 _IDENTITY: Final = ("key", "config_hash", "solver_version", "status", "reason", "advice")
 # Not quantities, given elsewhere in the row, or different from one machine to the next.
-_LEFT_OUT: Final = {*_IDENTITY, "versions", "seed", "result_hash", "solver_wall_s", "stability_changes"}
+_LEFT_OUT: Final = {
+    *_IDENTITY,
+    "versions",
+    "seed",
+    "result_hash",
+    "solver_wall_s",
+    "stability_changes",
+    "parameters",
+    "units",
+}
 # What an incomplete run has too.
 _OF_ANY_END: Final = ("growth_time", "solver_")
 _INT, _TEXT, _BOOL, _FLOAT = "int64", "string", "bool", "float64"
@@ -111,6 +121,7 @@ def results_table(points: Sequence[Point], records: Mapping[str, Record]) -> Tab
     Returns
     -------
     pyarrow.Table
+        Its fields carry their units as metadata, under the key ``unit``.
     """
     import pyarrow as pa
 
@@ -119,14 +130,16 @@ def results_table(points: Sequence[Point], records: Mapping[str, Record]) -> Tab
     names = list(dict.fromkeys([*_IDENTITY, *varied, *QUANTITIES, *(name for row in rows for name in row)]))
     last = ("phenotype", "phenotype_rule", "result_hash")
     names = [*(name for name in names if name not in last), *last]
-    columns = {}
+    columns, described = [], []
     for name in names:
         values = [row.get(name) for row in rows]
         kind = _kind(name, values)
         if kind == pa.string():
             values = [value if value is None or isinstance(value, str) else repr(value) for value in values]
-        columns[name] = pa.array(values, kind)
-    return pa.table(columns)
+        columns.append(pa.array(values, kind))
+        unit = unit_of(name)
+        described.append(pa.field(name, kind, metadata={"unit": unit} if unit else None))
+    return pa.table(columns, pa.schema(described))
 
 
 def read_results(folder: str | Path) -> Table:

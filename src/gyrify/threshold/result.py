@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
+from gyrify.markup import html_rows
+
 Definition = Literal["stability", "visible"]
 Becomes = Literal["unstable", "stable", "folded", "smooth"]
 
@@ -59,7 +61,7 @@ class Scanned:
     gi: float | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Threshold:
     """Critical value of one parameter.
 
@@ -111,6 +113,23 @@ class Threshold:
     wall_s: float
     at_edge: bool = False
 
+    def __repr__(self) -> str:
+        if self.critical_value is None:
+            return f"Threshold({self.parameter}, {self.definition}: nothing is critical)"
+        wave = ""
+        if self.mode_number is not None and self.wavelength_mm is not None:
+            waves = "gyri" if self.definition == "visible" else "waves"
+            wave = f", {self.mode_number} {waves} of {self.wavelength_mm:.3g} mm"
+        crossings = f"; {len(self.crossings)} crossings" if len(self.crossings) > 1 else ""
+        return f"Threshold({self.parameter} = {self.critical_value:.6g}, {self.definition}{wave}{crossings})"
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (f"{c.value:.6g}", f"{c.becomes} above", c.mode_number or "-", _length(c.wavelength_mm))
+            for c in self.crossings
+        ]
+        return html_rows(repr(self), rows, (self.parameter, "becomes", "mode number", "wavelength [mm]"))
+
     def as_dict(self) -> dict[str, Any]:
         """Return the fields nested as in ``gyrify threshold --json``."""
         return asdict(self)
@@ -120,3 +139,7 @@ def main_crossing(crossings: tuple[Crossing, ...]) -> Crossing | None:
     """The first crossing into instability or folds, or else the first."""
     into = [crossing for crossing in crossings if crossing.becomes in ("unstable", "folded")]
     return next(iter([*into, *crossings]), None)
+
+
+def _length(value: float | None) -> str:
+    return "-" if value is None else f"{value:.3g}"

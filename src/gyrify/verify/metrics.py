@@ -22,7 +22,9 @@ METRIC_BOUND: Final = 1e-9
 # Largest difference of what is zero but for rounding; of lengths, in a body as large as the standard slice.
 ROUNDING: Final = 1e-12
 # Keys of a summary that older versions did not write.
-LATER_KEYS: Final = frozenset({"warnings", "stability_changes", "visible_growth_time", "relaxed"})
+LATER_KEYS: Final = frozenset(
+    {"warnings", "stability_changes", "visible_growth_time", "relaxed", "parameters", "units"}
+)
 
 
 def check_metrics(

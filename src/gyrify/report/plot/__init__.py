@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
+from io import BytesIO
 from pathlib import Path
 from typing import Final, Literal, get_args
 
@@ -39,6 +41,7 @@ _TIMELESS: Final = {"mode": "the onset", "dispersion": "every growth time"}
 # Curves of several runs share their axes, and more colours are not told apart.
 _CURVES: Final = ("gi", "energy", "dispersion")
 _MOST_RUNS: Final = 500
+_NOTEBOOK_DPI: Final = 110
 _NARROWEST, _WIDEST = 60.0, 300.0
 
 
@@ -93,9 +96,23 @@ def plot(
     """
     _check(what, len(compare), at, stress, width_mm)
     if not isinstance(run, History) and is_study(run):
-        return study_plot(Path(run), what, len(compare), at, width_mm)
+        return _seen(study_plot(Path(run), what, len(compare), at, width_mm))
     states = show([run, *compare], at)
-    return stress_plot(states, width_mm, stress) if what == "stress" else _MAKERS[what](states, width_mm)
+    if what == "stress":
+        return _seen(stress_plot(states, width_mm, stress))
+    return _seen(_MAKERS[what](states, width_mm))
+
+
+def _seen(figure: Figure) -> Figure:
+    """A figure that a notebook shows, also where pyplot was never loaded."""
+    figure._repr_png_ = partial(_png, figure)  # type: ignore[attr-defined]
+    return figure
+
+
+def _png(figure: Figure) -> bytes:
+    stream = BytesIO()
+    figure.savefig(stream, format="png", dpi=_NOTEBOOK_DPI)
+    return stream.getvalue()
 
 
 def _check(what: str, others: int, at: float | None, stress: str | None, width_mm: float | None) -> None:
