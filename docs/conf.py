@@ -36,7 +36,7 @@ numpydoc_validation_overrides = {"PR01": [r"(?s).*\n *Attributes\n", r"Every num
 numpydoc_validation_exclude = {r"gyrify\.(?!Gyrify)\w+Error$"}
 
 html_theme = "furo"
-html_title = "gyrify"
+html_title = f"gyrify {release}"
 html_static_path = ["_static"]
 html_css_files = ["gyrify.css"]
 html_show_sphinx = False

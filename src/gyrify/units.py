@@ -32,6 +32,7 @@ UNITS: Final[dict[str, str]] = {
     "onset_growth_time": "growth time",
     "onset_mode_number": "1",
     "onset_wavelength_mm": "mm",
+    "onset_visible_delay": "growth time",
     "onset_eigenvalue": "Pa/mm²",
     "visible_growth_time": "growth time",
     "relaxed_gi_closing": "1",

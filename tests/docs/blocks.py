@@ -17,7 +17,8 @@ from pathlib import Path
 from markdown_it import MarkdownIt
 
 ROOT = Path(__file__).parents[2]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+_DOCS = ROOT / "docs"
+PAGES = [ROOT / "README.md", *sorted(_DOCS.glob("*.md")), *sorted((_DOCS / "api").glob("*.md"))]
 # Directives of the site, which its build executes.
 DIRECTIVES = {"{eval-rst}", "{include}", "{toctree}"}
 LANGUAGES = {"sh", "python", "toml", "json", "csv", "text", "bibtex"}

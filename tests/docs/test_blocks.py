@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
+import json
+import re
 from pathlib import Path
 
 import pytest
-from blocks import PAGES, Block, blocks, faults
+from blocks import PAGES, ROOT, Block, blocks, faults
 from options import unknown_options
 from printed import missing_lines, unknown_columns, unknown_keys
 from runner import Runner
+
+from gyrify import Config, measure_state, simulate
+from gyrify.cli import main
 
 BLOCKS = {page: blocks(page) for page in PAGES}
 WITH_BLOCKS = [page for page in PAGES if BLOCKS[page]]
@@ -91,6 +98,20 @@ def test_commands_that_are_not_run_must_exist() -> None:
     assert unknown_options("pip install something-else") != []
 
 
+@pytest.mark.slow
+def test_the_progress_that_the_quick_start_shows_is_that_of_its_run(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "quick-start.md").read_text(encoding="utf-8")
+    shown = re.search(r"(\d+)% .* time (\d+)/500  GI (\S+)  increment (\d+)  (\d+) iterations", page)
+    assert shown is not None
+    history = simulate(Config.preset("reference-slice"), tmp_path / "run")
+    number = int(shown[4])
+    work = history.journal.column("newton_iterations")
+    assert history.fractions[number] == pytest.approx(int(shown[1]) / 100)
+    assert history.growth_times[number] == pytest.approx(float(shown[2]))
+    assert measure_state(history, number).gi_closing == pytest.approx(float(shown[3]), abs=0.005)
+    assert work[number] == pytest.approx(int(shown[5]), abs=3)
+
+
 def test_printed_numbers_may_round_differently_and_no_more() -> None:
     printed = "start\nGI 1.412 (closing of 10 mm); 19 gyri\n5 increments, 3.4 s\n"
     assert missing_lines("GI 1.411 (closing of 10 mm); 19 gyri\n…\n5 increments, 9 s", printed) == []
@@ -101,9 +122,31 @@ def test_printed_numbers_may_round_differently_and_no_more() -> None:
 
 def test_samples_are_compared_by_key() -> None:
     real = {"gi": {"hull": 1.2, "rows": [{"id": "P1"}]}, "onset": None}
-    assert unknown_keys({"gi": {"hull": 9, "rows": [{"id": "x"}]}, "onset": {"mode": 1}}, real) == []
+    assert unknown_keys({"gi": {"hull": 1.2, "rows": [{"id": "x"}]}, "onset": {"mode": 1}}, real) == []
+    assert unknown_keys({"gi": {"hull": 1.21}}, real) == [".gi.hull = 1.21, not 1.2"]
+    assert unknown_keys({"exposed": 2.608}, {"exposed": 2.625}) == [".exposed = 2.608, not 2.625"]
+    assert unknown_keys({"wall_s": 9.0}, {"wall_s": 1.0}) == []
     assert unknown_keys({"gi": {"hul": 1.2}}, real) == [".gi.hul"]
     assert unknown_keys({"gi": {"rows": [{"name": "x"}]}}, real) == [".gi.rows[].name"]
     assert unknown_keys({"gi": 1.0}, real) == [".gi is dict"]
     assert unknown_columns("gi_hull,…\n1,2\n", "time,gi_hull\n") == []
     assert unknown_columns("gi\n", "time,gi_hull\n") == ["gi"]
+
+
+def test_pages_that_follow_one_another_do_not_collide() -> None:
+    """The same folder holds the same run on the first pages, which a new user follows in one place."""
+    folders: dict[str, set[str]] = {}
+    for name in ("README.md", "docs/quick-start.md", "docs/tutorial.md"):
+        for block in BLOCKS[ROOT / name]:
+            for line in block.text.splitlines() if block.language == "sh" else ():
+                words = line.split("#")[0].split()
+                if words[:2] != ["gyrify", "run"] or "--out" not in words:
+                    continue
+                place = words.index("--out")
+                options = words[2:place] + words[place + 2 :]
+                shown = io.StringIO()
+                with contextlib.redirect_stdout(shown):
+                    assert main(["config", "show", *options, "--json"]) == 0
+                folders.setdefault(words[place + 1], set()).add(json.loads(shown.getvalue())["config_hash"])
+    assert len(folders) >= 4
+    assert {folder: hashes for folder, hashes in folders.items() if len(hashes) > 1} == {}

@@ -56,13 +56,35 @@ def test_the_page_of_commands_has_every_option(writer: ModuleType) -> None:
 
 
 def test_every_public_name_is_in_the_reference() -> None:
+    pages = "\n".join(page.read_text(encoding="utf-8") for page in (DOCS / "api").glob("*.md"))
     documented = set(
-        re.findall(
-            r"auto(?:class|function|exception):: gyrify\.(\w+)(?:\(.*\))?$", text("api.md"), re.MULTILINE
-        )
+        re.findall(r"auto(?:class|function|exception):: gyrify\.(\w+)(?:\(.*\))?$", pages, re.MULTILINE)
     )
     assert set(gyrify.__all__) - {"__version__"} - documented == set()
     assert documented - set(gyrify.__all__) == set()
+
+
+def test_the_reference_is_in_short_pages_that_an_index_lists() -> None:
+    index = text("api.md")
+    assert len(index.splitlines()) < 40
+    for page in (DOCS / "api").glob("*.md"):
+        names = re.findall(r"auto\w+:: gyrify\.([\w.]+)", page.read_text(encoding="utf-8"))
+        assert 1 <= len(names) <= 10, page.name
+        assert [name for name in names if f"`{name}`" not in index] == []
+
+
+def test_the_first_page_has_version_gallery_and_clone() -> None:
+    page = text("index.md")
+    assert f"This is version {gyrify.__version__};" in page
+    assert "git clone <address of the repository>" in page
+    assert page.count("](figures/") >= 6
+
+
+def test_nothing_is_installed_from_where_it_is_not_published() -> None:
+    root = DOCS.parent
+    files = [root / "README.md", *DOCS.rglob("*.md"), *(root / "src").rglob("*.py")]
+    found = [file.name for file in files if "gyrify[" in file.read_text(encoding="utf-8")]
+    assert found in ([], ["changelog.md"])
 
 
 def test_letters_of_the_house_are_in_the_notation() -> None:

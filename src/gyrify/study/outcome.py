@@ -112,7 +112,13 @@ class StudyResult:
         return read_results(self.folder)
 
     def point(self, key: str) -> StoredPoint:
-        """A point as it is stored; see `gyrify.study.final_state`."""
+        """A point as it is stored; see `gyrify.study.final_state`.
+
+        Parameters
+        ----------
+        key : str
+            First 12 digits of the configuration's hash, the ``key`` of its row.
+        """
         return StoredPoint(self.folder / RUNS / key, self.records[key])
 
     def as_dict(self) -> dict[str, Any]:
