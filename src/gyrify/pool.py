@@ -128,7 +128,7 @@ class _Crew:
         """
         if not self._begun.is_set():
             raise GyrifyError(
-                "No process for the runs could begin.",
+                "No process for the runs could be started.",
                 "In a script, call this below if __name__ == '__main__'; or use one worker.",
             )
 

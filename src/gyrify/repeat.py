@@ -56,11 +56,9 @@ class KnownRun:
     def note(self) -> str:
         """What becomes of it, in one sentence."""
         if self.is_done:
-            return (
-                f"{self.folder} holds this run already, completed: nothing is computed.{self._other_versions}"
-            )
+            return f"{self.folder} already holds this run, and it is complete: nothing is computed.{self._other_versions}"
         if self.status == "completed":
-            return f"{self.folder} holds this run already, completed: its files are written again."
+            return f"{self.folder} already holds this run, and it is complete: its files are written again."
         return f"{self.folder} holds this run, which has not completed: it is continued."
 
     @property

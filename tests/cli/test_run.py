@@ -129,7 +129,7 @@ def test_two_processes_on_one_folder(tmp_path: Path, capsys: Capture) -> None:
         first.communicate()
     shown = History.load(folder)
     assert shown.status == "interrupted"
-    assert "without a word" in shown.reason
+    assert "ended unexpectedly" in shown.reason
 
 
 def wait_for(path: Path, process: subprocess.Popen[bytes]) -> None:

@@ -60,7 +60,7 @@ def test_a_view_that_never_ends_is_not_read(run: Path) -> None:
         ("UPDATE increments SET next_span = 0 WHERE number = 2", "Increment 2"),
         ("UPDATE increments SET couplings = x'ffffffffffffff7f' WHERE number = 2", "Increment 2"),
         ("UPDATE increments SET displacement = zeroblob(24) WHERE number = 0", "Increment 0"),
-        ("UPDATE increments SET position = position * 4 WHERE number = 2", "beyond the end"),
+        ("UPDATE increments SET position = position * 4 WHERE number = 2", "beyond the end of growth"),
         ("INSERT OR REPLACE INTO meta VALUES ('status', 'fine')", "status"),
         ("INSERT OR REPLACE INTO meta VALUES ('versions', '[1]')", "versions"),
         ("INSERT OR REPLACE INTO stability VALUES (1, 'many')", "stability"),
@@ -84,7 +84,7 @@ def test_what_sqlite_says_of_a_damaged_schema_is_fit_for_a_terminal(run: Path) -
 
 def test_states_of_another_mesh_are_refused(run: Path) -> None:
     forge(run, "UPDATE increments SET displacement = zeroblob(1600)")
-    with pytest.raises(HistoryError, match="none of the mesh"):
+    with pytest.raises(HistoryError, match="does not fit the mesh"):
         History.load(run).points()
 
 
@@ -108,7 +108,7 @@ def test_links_that_would_be_written_through_are_refused(
     before = target.read_bytes()
     (run / name).symlink_to(target)
     assert main(["resume", str(run), "--quiet"]) == 2
-    assert "is a link" in capsys.readouterr().err
+    assert "is a symbolic link" in capsys.readouterr().err
     assert target.read_bytes() == before
 
 
@@ -169,7 +169,7 @@ def test_a_key_that_leads_out_of_a_study_is_refused(tmp_path: Path) -> None:
     pq.write_table(pa.table({name: ["../../else"] for name in names}), tmp_path / "results.parquet")
     with pytest.raises(HistoryError, match="no key of a run"):
         read_results(tmp_path)
-    with pytest.raises(HistoryError, match="no whole run"):
+    with pytest.raises(HistoryError, match="no complete run"):
         final_state(tmp_path, "../../else")
 
 

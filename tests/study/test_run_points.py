@@ -81,7 +81,7 @@ def test_tables_and_pictures_rebuild_from_what_is_stored(done: Path) -> None:
     assert stored.final.gi_closing[-1] == stored.summary["gi"]["closing"]
     assert stored.final.gi_hull.shape == stored.final.growth_time.shape
     assert (history.onset is None) == (stored.final.onset_vector.size == 0)
-    with pytest.raises(HistoryError, match="no whole run"):
+    with pytest.raises(HistoryError, match="no complete run"):
         final_state(done, "0" * 12)
 
 
@@ -174,7 +174,7 @@ def test_bad_arguments_are_refused(tmp_path: Path, wrong: dict[str, Any]) -> Non
     with pytest.raises(ConfigError):
         run_study(SMALL, tmp_path, **wrong)
     points = SMALL.points()
-    with pytest.raises(ConfigError, match="there twice"):
+    with pytest.raises(ConfigError, match="given twice"):
         run_points([points[0], points[0]], tmp_path)
     with pytest.raises(ConfigError, match="no point"):
         run_points([], tmp_path)

@@ -159,7 +159,7 @@ def test_a_killed_run_reads_as_interrupted(tmp_path: Path) -> None:
     journal.set_meta(status="running")
     history = History(journal)
     assert history.status == "interrupted"
-    assert "without a word" in history.reason
+    assert "ended unexpectedly" in history.reason
     assert "gyrify resume" in history.advice
 
 

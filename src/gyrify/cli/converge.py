@@ -92,7 +92,8 @@ def _subjects(text: str) -> Sequence[Subject]:
     for word in words:
         if word not in known:
             raise ConfigError(
-                f"--of {word[:60]} is not something to refine.", f"Choose among {', '.join(SUBJECTS)}."
+                f"--of {word[:60]} is not a subject that can be refined.",
+                f"Choose among {', '.join(SUBJECTS)}.",
             )
     return [known[word] for word in words]
 

@@ -90,8 +90,8 @@ def _branch(config: Config) -> str:
     if dissipation.kind == "none" or dissipation.number == 0.0:
         return ""
     return (
-        f'stability.follow_branch = true is not allowed with dissipation.kind = "{dissipation.kind}": what '
-        'dissipation holds back is no equilibrium to leave. Try dissipation.kind = "none".'
+        f'stability.follow_branch = true is not allowed with dissipation.kind = "{dissipation.kind}": with '
+        'dissipation, a state is not an equilibrium of the tissue alone. Try dissipation.kind = "none".'
     )
 
 
@@ -106,7 +106,7 @@ def _axial(config: Config) -> str:
     if config.dissipation.kind == "kelvin_voigt":
         return (
             'growth.out_of_plane = "generalised" is not allowed with dissipation.kind = "kelvin_voigt": its '
-            'dashpots know no stretch along z. Try dissipation.kind = "drag".'
+            'dashpots do not act along z. Try dissipation.kind = "drag".'
         )
     return ""
 

@@ -160,7 +160,7 @@ def _advice(field: FieldInfo, value: object) -> str:
         try:
             parse_number(str(value))
         except ValueError as reason:
-            return f"Mind that {reason}."
+            return f"Check the fraction: {reason}."
     if is_number(field) and isinstance(value, str) and value not in choices(field):
         return number_advice(value, extra(field, "unit")) or _default(field)
     words = [word for word in choices(field) if isinstance(word, str)]

@@ -41,7 +41,7 @@ def plan(config: Config, subjects: Sequence[Subject], levels: int) -> dict[Subje
     if not 2 <= levels <= MAX_LEVELS:
         raise ConfigError(f"levels = {levels} is out of range (2 to {MAX_LEVELS}).", "Try 3.")
     if not subjects:
-        raise ConfigError("Nothing to refine is named.", f"Choose among {', '.join(SUBJECTS)}.")
+        raise ConfigError("No subject to refine is given.", f"Choose among {', '.join(SUBJECTS)}.")
     for subject in subjects:
         _require_meaning(config, subject, levels)
     return {

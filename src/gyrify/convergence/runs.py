@@ -97,7 +97,7 @@ def complete_all(
 
 
 def _lost(config: Config, *, folder: Path) -> Level:
-    reason = "Its process ended without a word, for want of memory perhaps. Use a smaller mesh."
+    reason = "Its process ended unexpectedly; memory may have run out. Use a smaller mesh."
     return Level(config, run_folder(config, folder), "failed", reason, {}, 0.0)
 
 

@@ -68,7 +68,7 @@ def growth_ratio_from_scaling(
         raise ConfigError(
             f"unit = {unit!r} gives no growth ratio: in {unit}³ the scaling law has the white matter grow by "
             f"{white_growth:.3g}, and it must be > 0.",
-            "Its prefactor of 1 ties it to a unit; the published value is in mm³.",
+            "The law holds in one unit alone: it was published with mm³.",
         )
     return growth / white_growth
 

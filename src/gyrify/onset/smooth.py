@@ -108,7 +108,7 @@ class SmoothBranch:
         if not self.known:
             raise SolveError(
                 f"No smooth state is known to reach {value:.6g} from: every one that was found is folded.",
-                "Raise mesh.n_around: on a coarse mesh the smooth state may fold by degrees.",
+                "Raise mesh.n_around: on a coarse mesh the smooth state may fold gradually.",
             )
         near = min(self.known.values(), key=lambda state: abs(state.value - value))
         state = self._try(value, near)

@@ -90,7 +90,7 @@ def _metric(row: Mapping[str, Any], name: str) -> float:
     found = row.get(name)
     if found is None or not math.isfinite(found) or found < 0:
         raise ConfigError(
-            f"{name} = {found} is no metric of a folded shape: it must be a finite number >= 0.",
+            f"{name} = {found} is not a metric of a folded shape: it must be a finite number >= 0.",
             "Pass the metrics of a completed run.",
         )
     return float(found)

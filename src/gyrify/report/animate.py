@@ -123,7 +123,7 @@ def _check(target: Path, field: str, **numbers: float) -> None:
     """Refuse what cannot be written, before a run is read."""
     if target.suffix.lower() not in FORMATS:
         raise ConfigError(
-            f"out = {str(target)[-60:]!r} is of no known format.",
+            f"out = {str(target)[-60:]!r} has no known format.",
             f"End it with one of: {', '.join(FORMATS)}.",
         )
     if field not in FIELDS:

@@ -147,7 +147,7 @@ class _Matrices:
         if error.value == _NOT_DEFINITE:
             raise NotDefiniteError("A pivot of the stiffness matrix is not positive.")
         if error.value == _NO_MEMORY:  # no fault of the matrix, as a SolveError would say
-            raise MemoryError(f"PARDISO found no memory in phase {phase}.")
+            raise MemoryError(f"PARDISO ran out of memory in phase {phase}.")
         if error.value != 0:
             raise SolveError(f"PARDISO failed in phase {phase} with error {error.value}.")
         return solution

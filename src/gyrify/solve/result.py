@@ -18,10 +18,10 @@ class Result(Enum):
     )
     LINE_SEARCH = (
         "no step along the Newton direction lowers the energy",
-        "Raise solver.increments or mesh.n_around, or loosen solver.tolerance.",
+        "Raise solver.increments or mesh.n_around, or use a larger solver.tolerance.",
     )
     BLOCKED = (
-        "contact or a collapsing cell leaves no room for a step",
+        "no step is possible: the contour would cross itself, or a cell would be inverted",
         "Raise mesh.n_around, or contact.activation_fraction.",
     )
     INADMISSIBLE = (

@@ -28,7 +28,8 @@ def refuse_link(path: Path) -> None:
     """
     if path.is_symlink():
         raise HistoryError(
-            f"{path} is a link: nothing is written through it.", "Remove it, or put the file itself there."
+            f"{path} is a symbolic link, and gyrify does not write through links.",
+            "Remove it, or put the file itself there.",
         )
 
 
@@ -51,5 +52,5 @@ def read_facts(path: Path) -> dict[str, Any]:
     except RecursionError:
         raise ValueError("it is nested too deeply") from None
     if not isinstance(told, dict):
-        raise ValueError("it is no object of JSON")
+        raise ValueError("it is not a JSON object")
     return told

@@ -65,7 +65,7 @@ class History(Views):
         if len(history) == 0:
             raise HistoryError(f"The run in {folder} has no state yet.", "Continue it with `gyrify resume`.")
         if history.positions[-1] > TICKS * history.config.solver.increments:
-            raise HistoryError(f"The run in {folder} goes beyond the end of its growth.", RERUN)
+            raise HistoryError(f"The run in {folder} holds states beyond the end of growth.", RERUN)
         return history
 
     @cached_property
@@ -137,7 +137,7 @@ class History(Views):
             )
         found = self.journal.displacement(number)
         if found.shape != self.slice.state_shape:
-            raise HistoryError(f"State {index} is none of the mesh of its configuration.", RERUN)
+            raise HistoryError(f"State {index} does not fit the mesh of its configuration.", RERUN)
         return found
 
     def points(self, index: int = -1) -> FloatArray:
@@ -178,7 +178,7 @@ class History(Views):
     @property
     def reason(self) -> str:
         """Why the run ended early; empty when it completed."""
-        return "Its process ended without a word." if self._is_abandoned else self.journal.meta("reason")
+        return "Its process ended unexpectedly, without a message." if self._is_abandoned else self.journal.meta("reason")
 
     @property
     def advice(self) -> str:

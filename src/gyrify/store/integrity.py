@@ -76,11 +76,11 @@ def require_facts(meta: dict[Any, Any], name: str) -> None:
     for key in _WORDS:
         text = meta.get(key, "")
         if not isinstance(text, str) or len(text) > _LONGEST_TEXT:
-            raise HistoryError(f"The journal {name} is damaged: its {key} is no text.", _ADVICE)
+            raise HistoryError(f"The journal {name} is damaged: its {key} is not text.", _ADVICE)
     if "config" not in meta:
         raise HistoryError(f"The journal {name} is damaged: it has no configuration.", _ADVICE)
     if meta.get("status", "running") not in STATUSES:
-        raise HistoryError(f"The journal {name} is damaged: its status is none that there is.", _ADVICE)
+        raise HistoryError(f"The journal {name} is damaged: its status is not known.", _ADVICE)
     try:
         versions = json.loads(meta.get("versions", "{}"))
     except (ValueError, RecursionError):

@@ -152,14 +152,19 @@ class Journal:
         for number in range(len(self)):
             row = self._row(number)
             if not is_sound(row, position) or (number > 0 and len(row[10]) != n_bytes):
-                raise HistoryError(f"Increment {number} in {self.name} is none of a run.", RERUN)
+                raise HistoryError(
+                    f"Increment {number} in {self.name} is damaged: it holds values that no run can have.",
+                    RERUN,
+                )
             position, n_bytes = row[1], len(row[10])
         if not (
             all(type(value) is int for pair in pivots for value in pair)
             and (onset is None or is_sound_onset(onset, n_bytes))
             and all(map(is_sound_change, changes))
         ):
-            raise HistoryError(f"What {self.name} says of stability is none of a run.", RERUN)
+            raise HistoryError(
+                f"What {self.name} says of stability is damaged: it holds values that no run can have.", RERUN
+            )
 
     def meta(self, key: str, default: str = "") -> str:
         """A recorded fact, such as the configuration or the status."""

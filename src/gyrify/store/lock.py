@@ -56,7 +56,7 @@ def run_lock(folder: Path, what: str = "run") -> Iterator[str]:
             ) from held
     try:
         stale = (
-            f"{_describe(owner)} ended without closing this {what}; it is taken over."
+            f"{_describe(owner)} ended without closing this {what}; this process uses the folder now."
             if owner.exists()
             else ""
         )
@@ -102,4 +102,4 @@ def _describe(owner: Path) -> str:
         fields = read_facts(owner)
         return f"process {int(fields['pid'])} on {shorten(str(fields['host']))}"
     except (OSError, ValueError, KeyError, TypeError, OverflowError):
-        return "a process of unknown number"
+        return "an unknown process"

@@ -114,10 +114,10 @@ class FinalState:
                 found = {field.name: np.asarray(arrays[field.name]) for field in fields(cls)}
         except _UNREADABLE as fault:
             raise HistoryError(
-                f"{path} is damaged: {_told(fault)}.", "Run the study again to redo it."
+                f"{path} is damaged: {_told(fault)}.", "Run the study again to compute it again."
             ) from fault
         if any(array.dtype != np.float64 for array in found.values()):
-            raise HistoryError(f"{path} holds no numbers.", "Run the study again to redo it.")
+            raise HistoryError(f"{path} holds no numbers.", "Run the study again to compute it again.")
         return cls(**found)
 
 

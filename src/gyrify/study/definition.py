@@ -133,8 +133,8 @@ class Study:
             point = _point(self.base, overrides, number)
             if point.key in points:
                 raise ConfigError(
-                    f"Point {number} of the design ({_told(overrides)}) is there twice.",
-                    "Give each value once; a random choice among few values repeats itself: use a grid.",
+                    f"Point {number} of the design ({_told(overrides)}) is given twice.",
+                    "Give each value once; a random design of few values draws some points twice: use a grid.",
                 )
             points[point.key] = point
         return tuple(points.values())
@@ -189,7 +189,10 @@ def _base(table: object, folder: Path) -> Config:
     if source is None:
         return Config.from_dict(own)
     if not isinstance(source, str) or "preset" in own:
-        raise ConfigError("base needs either a preset or config, the path of a file.", "Leave one out.")
+        raise ConfigError(
+            "base takes either preset or config, the path of a file, and config must be text.",
+            "Leave one out.",
+        )
     return Config.from_dict(merge(read_tables(folder / source), own))
 
 

@@ -87,8 +87,9 @@ def _side_by_side(columns: Sequence[tuple[object, ...]]) -> list[tuple[object, .
     lengths = [len(column) for column in columns]
     if len(set(lengths)) > 1:
         raise ConfigError(
-            f"The parameters have {', '.join(map(str, lengths))} values, which cannot be taken side by side.",
-            'Give each as many, or use kind = "grid".',
+            f'The parameters have {", ".join(map(str, lengths))} values: kind = "zip" takes one value of each at '
+            "a time, and needs as many of each.",
+            'Give the same number of values for each, or use kind = "grid".',
         )
     return list(zip(*columns, strict=True))
 
@@ -124,7 +125,9 @@ def read_design(table: object) -> Design:
         return Design(kind, (), n, seed, _rows(table, kind))
     given = table.get("parameter", [])
     if not isinstance(given, list | tuple) or not given:
-        raise ConfigError("The design varies nothing.", "Write a [[design.parameter]] with key and values.")
+        raise ConfigError(
+            "The design does not vary any parameter.", "Write a [[design.parameter]] with key and values."
+        )
     parameters = tuple(read_parameter(item, f"design.parameter {i + 1}") for i, item in enumerate(given))
     _require_once([parameter.key for parameter in parameters])
     return Design(kind, parameters, n, seed)
@@ -134,6 +137,8 @@ def _kind(kind: object) -> Kind:
     for known in KINDS:
         if kind == known:
             return known
+    if kind is None:
+        raise ConfigError(f"design.kind is missing: one of {', '.join(KINDS)}.", 'Write kind = "grid".')
     close = nearest(kind, KINDS) if isinstance(kind, str) else ""
     raise ConfigError(
         f"design.kind = {show(kind)} is not allowed: {', '.join(KINDS)}.",
@@ -152,11 +157,13 @@ def _rows(table: Mapping[str, Any], kind: Kind) -> tuple[Mapping[str, object], .
     given = table["point"]
     if kind != "list" or "parameter" in table:
         raise ConfigError(
-            '[[design.point]] goes with kind = "list", and without [[design.parameter]].',
+            '[[design.point]] is used with kind = "list" alone, and without [[design.parameter]].',
             "Leave one of them out.",
         )
     if not isinstance(given, list | tuple) or not all(isinstance(row, Mapping) and row for row in given):
-        raise ConfigError("design.point must be tables with a key at least.", "Write [[design.point]].")
+        raise ConfigError(
+            "Each design.point must be a table with at least one key.", "Write [[design.point]]."
+        )
     rows = tuple(dict(_flat(row)) for row in given)
     for number, row in enumerate(rows):
         for key in row:

@@ -58,7 +58,7 @@ def _by_executor(work: Work, configs: Sequence[Config], executor: Executor) -> G
                 yield future.result()
             except (BrokenExecutor, CancelledError) as broken:
                 raise GyrifyError(
-                    f"The executor broke: {broken or type(broken).__name__}.",
+                    f"The executor failed: {broken or type(broken).__name__}.",
                     "What is done is stored: run the study again to continue.",
                 ) from broken
             except Exception as error:  # of the executor's own: a point's errors are outcomes

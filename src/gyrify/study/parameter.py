@@ -150,7 +150,9 @@ def _values(given: Any, where: str) -> tuple[object, ...]:
 
 def _range(given: Any, key: str, scale: str, where: str) -> tuple[float, float]:
     if not is_number(_field(key)):
-        raise ConfigError(f"{where}: it is no number and has no range.", "List its values.")
+        raise ConfigError(
+            f"{where}: its values are not numbers, so that it has no range.", "List its values."
+        )
     if not isinstance(given, list | tuple) or len(given) != 2:
         raise ConfigError(
             f"{where}: range = {show(given)} is not a pair.", "Write range = [lowest, highest]."
@@ -159,7 +161,9 @@ def _range(given: Any, key: str, scale: str, where: str) -> tuple[float, float]:
     if not low < high:
         raise ConfigError(f"{where}: range = {show(given)} does not increase.", "Give the lower end first.")
     if scale == "log" and low <= 0.0:
-        raise ConfigError(f"{where}: a logarithmic range begins above 0, not at {low:g}.", "Try 0.01.")
+        raise ConfigError(
+            f"{where}: a logarithmic range must begin above 0, but this one begins at {low:g}.", "Try 0.01."
+        )
     if is_whole(key) and (low % 1 or high % 1):
         raise ConfigError(
             f"{where}: range = {show(given)} has ends that are not whole.", "Try whole numbers."

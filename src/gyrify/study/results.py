@@ -186,7 +186,7 @@ def _require_columns(table: Table) -> None:
     kinds = dict(zip(table.column_names, map(str, table.schema.types), strict=True))
     kinds = {name: _FLOAT if kind == "double" else kind for name, kind in kinds.items()}
     if len(kinds) < table.num_columns:
-        raise ValueError("a column is there twice")
+        raise ValueError("a column appears twice")
     wanted = dict.fromkeys(_IDENTITY, _TEXT) | QUANTITIES | {"result_hash": _TEXT, "wall_s": "nothing"}
     for name, kind in kinds.items():
         known = wanted.get(name)
@@ -199,7 +199,7 @@ def _require_columns(table: Table) -> None:
             raise ValueError(f"the column {name} is missing or has gaps")
     for key in table["key"].to_pylist():
         if not re.fullmatch(r"[0-9a-f]{12}", key):
-            raise ValueError(f"{show(key)} is no key of a run")
+            raise ValueError(f"{show(key)} is not the key of a run")
 
 
 def flat(nested: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:

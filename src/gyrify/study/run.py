@@ -116,9 +116,9 @@ def _require_sensible(
     points: Sequence[Point], workers: int, executor: Executor | None, scheduler: str | None
 ) -> None:
     if not points:
-        raise ConfigError("There is no point to run.", "Give one at least.")
+        raise ConfigError("No points are given.", "Give at least one.")
     if len({point.key for point in points}) < len(points):
-        raise ConfigError("A configuration is there twice.", "Give each point once.")
+        raise ConfigError("A configuration is given twice.", "Give each point once.")
     if not 1 <= workers <= MAX_WORKERS:
         raise ConfigError(
             f"workers = {workers} is out of range (1 to {MAX_WORKERS}).", "Try the number of cores."

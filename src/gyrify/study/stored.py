@@ -19,7 +19,7 @@ from gyrify.meshing import build_mesh
 from gyrify.study.archive import FINAL, FinalState, Record, read_record
 
 RUNS = "runs"
-_REDO = "Run the study again to redo it."
+_REDO = "Run the study again to compute it again."
 FloatArray = NDArray[np.float64]
 
 
@@ -126,5 +126,5 @@ def final_state(folder: str | Path, key: str) -> StoredPoint:
     target = Path(folder) / RUNS / key
     record = read_record(target) if re.fullmatch(r"[0-9a-f]{12}", key) else None
     if record is None:
-        raise HistoryError(f"There is no whole run {shorten(key)!r} in the study {folder}.", _REDO)
+        raise HistoryError(f"The study {folder} holds no complete run {shorten(key)!r}.", _REDO)
     return StoredPoint(target, record)

@@ -131,7 +131,7 @@ def _check(what: str, others: int, at: float | None, stress: str | None, width_m
         )
     if stress is not None and what != "stress":
         raise ConfigError(
-            f"stress = {stress[:60]!r} has no meaning for {what}.", "It goes with what = stress."
+            f"stress = {stress[:60]!r} has no meaning for {what}.", "Use it with what = stress."
         )
     if width_mm is not None and not _NARROWEST <= width_mm <= _WIDEST:
         raise ConfigError(
