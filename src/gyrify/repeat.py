@@ -56,10 +56,12 @@ class KnownRun:
     def note(self) -> str:
         """What becomes of it, in one sentence."""
         if self.is_done:
-            return f"{self.folder} already holds this run, and it is complete: nothing is computed.{self._other_versions}"
-        if self.status == "completed":
-            return f"{self.folder} already holds this run, and it is complete: its files are written again."
-        return f"{self.folder} holds this run, which has not completed: it is continued."
+            what = f"it is complete: nothing is computed.{self._other_versions}"
+        elif self.status == "completed":
+            what = "it is complete: its files are written again."
+        else:
+            what = "it is not complete: it is continued."
+        return f"{self.folder} already holds this run, and {what}"
 
     @property
     def _other_versions(self) -> str:

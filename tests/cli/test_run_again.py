@@ -51,7 +51,7 @@ def test_the_same_run_again_is_done_already(toml: Path, tmp_path: Path, capsys: 
     assert main([*command, "--json"]) == 0
     out, err = capsys.readouterr()
     assert json.loads(out) == summary
-    assert "holds this run already, completed: nothing is computed" in err
+    assert "already holds this run, and it is complete: nothing is computed" in err
     assert "Warning: " in err
     assert main(command) == 0
     assert capsys.readouterr().out.startswith("GI ")
@@ -65,7 +65,7 @@ def test_a_run_that_ended_early_is_continued(
     half_run(tiny, folder)
     assert main(["run", str(toml), "--out", str(folder)]) == 0
     err = capsys.readouterr().err
-    assert "has not completed: it is continued" in err
+    assert "it is not complete: it is continued" in err
     assert "growth time 250 of 500" not in err  # that was known
     history = History.load(folder)
     assert (history.status, history.result_hash) == ("completed", simulate(tiny).result_hash)

@@ -61,7 +61,7 @@ WRONG: list[tuple[str, dict[str, Any], str]] = [
     (
         "lengths",
         design(kind="zip", parameter=[GROWTH, {"key": "seed", "values": [1]}]),
-        "needs as many of each",
+        "as many of each",
     ),
     ("nothing drawn", design(kind="random"), "design.n is missing"),
     ("points in a grid", design(point=[{"seed": 1}]), "is used with kind"),

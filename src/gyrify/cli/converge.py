@@ -92,7 +92,7 @@ def _subjects(text: str) -> Sequence[Subject]:
     for word in words:
         if word not in known:
             raise ConfigError(
-                f"--of {word[:60]} is not a subject that can be refined.",
+                f"--of {word[:60]} cannot be refined.",
                 f"Choose among {', '.join(SUBJECTS)}.",
             )
     return [known[word] for word in words]

@@ -178,11 +178,7 @@ class History(Views):
     @property
     def reason(self) -> str:
         """Why the run ended early; empty when it completed."""
-        return (
-            "Its process ended unexpectedly, without a message."
-            if self._is_abandoned
-            else self.journal.meta("reason")
-        )
+        return "Its process ended unexpectedly." if self._is_abandoned else self.journal.meta("reason")
 
     @property
     def advice(self) -> str:

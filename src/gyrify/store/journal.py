@@ -38,6 +38,7 @@ from gyrify.store.integrity import (
 from gyrify.store.tables import TABLES, TABLES_OF_ANY_VERSION
 
 FORMAT: Final = 1
+_IMPOSSIBLE: Final = "it holds values that no run can have"
 _APPLICATION_ID: Final = 0x67797269  # "gyri"
 
 
@@ -153,7 +154,7 @@ class Journal:
             row = self._row(number)
             if not is_sound(row, position) or (number > 0 and len(row[10]) != n_bytes):
                 raise HistoryError(
-                    f"Increment {number} in {self.name} is damaged: it holds values that no run can have.",
+                    f"Increment {number} in {self.name} is damaged: {_IMPOSSIBLE}.",
                     RERUN,
                 )
             position, n_bytes = row[1], len(row[10])
@@ -162,9 +163,7 @@ class Journal:
             and (onset is None or is_sound_onset(onset, n_bytes))
             and all(map(is_sound_change, changes))
         ):
-            raise HistoryError(
-                f"What {self.name} says of stability is damaged: it holds values that no run can have.", RERUN
-            )
+            raise HistoryError(f"The record of stability in {self.name} is damaged: {_IMPOSSIBLE}.", RERUN)
 
     def meta(self, key: str, default: str = "") -> str:
         """A recorded fact, such as the configuration or the status."""

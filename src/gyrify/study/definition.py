@@ -134,7 +134,7 @@ class Study:
             if point.key in points:
                 raise ConfigError(
                     f"Point {number} of the design ({_told(overrides)}) is given twice.",
-                    "Give each value once; a random design of few values draws some points twice: use a grid.",
+                    "Give each value once; a random design draws few values more than once: use a grid.",
                 )
             points[point.key] = point
         return tuple(points.values())

@@ -87,8 +87,8 @@ def _side_by_side(columns: Sequence[tuple[object, ...]]) -> list[tuple[object, .
     lengths = [len(column) for column in columns]
     if len(set(lengths)) > 1:
         raise ConfigError(
-            f'The parameters have {", ".join(map(str, lengths))} values: kind = "zip" takes one value of each at '
-            "a time, and needs as many of each.",
+            f'The parameters have {", ".join(map(str, lengths))} values: kind = "zip" takes one of each at a '
+            "time, and needs as many of each.",
             'Give the same number of values for each, or use kind = "grid".',
         )
     return list(zip(*columns, strict=True))

@@ -85,7 +85,7 @@ def solve_point(config: Config, watch: Watcher = go_on, *, folder: Path | None =
     return Outcome(config, solver_version(), time.perf_counter() - begun, *told)
 
 
-def lost_point(config: Config, reason: str = "Its process ended unexpectedly, without a message.") -> Outcome:
+def lost_point(config: Config, reason: str = "Its process ended unexpectedly.") -> Outcome:
     """What a point comes to that no process could finish."""
     advice = "Memory ran out, perhaps: use a smaller mesh or fewer workers, then --retry-failed."
     return Outcome(config, solver_version(), 0.0, "failed", reason, advice, None, b"")
