@@ -38,23 +38,6 @@ __all__ = [
     "write_metrics",
     "write_summary",
 ]
-# Parameters that every summary tells.
-_TOLD: Final = frozenset(
-    {
-        "geometry.shape",
-        "geometry.cortical_thickness",
-        "material.stiffness_ratio",
-        "growth.ratio",
-        "growth.rate",
-        "growth.duration",
-        "dissipation.kind",
-        "dissipation.number",
-        "mesh.n_around",
-        "mesh.n_layers",
-        "mesh.element",
-        "solver.increments",
-    }
-)
 
 # Parameters that every summary tells.
 _TOLD: Final = frozenset(
