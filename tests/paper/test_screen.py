@@ -5,6 +5,8 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from itertools import pairwise
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from fake_bench import FakeBench
@@ -15,7 +17,7 @@ from gyrify.paper.cases import EQUAL, SOFT, Case
 from gyrify.paper.reading import Mechanics, Reading, grid, variants
 from gyrify.paper.reproduce import reproduce
 from gyrify.paper.row import GI_DEFINITIONS
-from gyrify.paper.screen import BEST, ScreenProgress, ranked, screen
+from gyrify.paper.screen import BEST, ScreenProgress, _live, ranked, screen
 
 BASE = Config()
 
@@ -147,3 +149,33 @@ def test_equals_are_ranked_by_the_standard_indices() -> None:
         abs(found[0].rows[found[0].gi][Case(SOFT)].gi - 1.29)
         + abs(found[0].rows[found[0].gi][Case(EQUAL)].gi - 1.37)
     )
+
+
+def made_up(name: str, passed: int, bound: int, misfit: float = 1.0) -> Any:
+    return SimpleNamespace(
+        mechanics=name, passed=passed, bound=bound, misfit=misfit, is_open=bound > passed, reading=name
+    )
+
+
+@pytest.mark.parametrize(("bound", "is_live"), [(4, False), (5, False), (6, True), (9, True)])
+def test_a_reading_is_given_up_once_it_cannot_pass_the_third_best(bound: int, is_live: bool) -> None:
+    """The best three hold 8, 7 and 5, and are decided; to reach 5 changes nothing, to reach 6 does."""
+    best = [made_up("a", 8, 8), made_up("b", 7, 7), made_up("c", 5, 5)]
+    last = made_up("d", 2, bound)
+    assert (last in _live([*best, last])) is is_live
+    assert _live(best) == []
+
+
+def test_an_open_reading_among_the_best_is_run_to_its_end_and_fewer_than_three_give_nobody_up() -> None:
+    best = [made_up("a", 8, 8), made_up("b", 7, 9), made_up("c", 5, 6)]
+    low = made_up("d", 1, 5)
+    assert [c.mechanics for c in _live([*best, low])] == ["b", "c"]
+    assert [c.mechanics for c in _live([made_up("a", 8, 8), low])] == ["d"]
+
+
+def test_the_rank_is_by_what_holds_then_what_can_then_the_indices_then_the_name() -> None:
+    order = [
+        made_up("z", 3, 3), made_up("y", 2, 5), made_up("x", 2, 4, 0.1), made_up("u", 2, 4, 0.2),
+        made_up("v", 2, 4, 0.2),
+    ]  # fmt: skip
+    assert ranked(reversed(order)) == order
