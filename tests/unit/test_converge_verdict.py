@@ -140,7 +140,7 @@ def test_resolution_is_that_of_the_mesh(tiny: Config, element: str) -> None:
     ("changes", "subjects", "levels", "word"),
     [
         ({}, ("mesh",), 1, "levels = 1"),
-        ({}, (), 3, "Nothing"),
+        ({}, (), 3, "No subject"),
         ({}, ("colour",), 3, "colour"),
         ({"contact.enabled": False}, ("contact",), 3, "no contact"),
         ({"mesh.refine": 3}, ("mesh",), 3, "mesh.refine = 5"),

@@ -147,7 +147,7 @@ def test_bisection_keeps_the_half_in_which_folds_begin_to_be_seen(
     slope: float, becomes: str, exact: float, tolerance: float
 ) -> None:
     scan, asked = visible(lambda value: 1.1 + slope * (value - exact))
-    below, above = scan.scan([1.0, 2.0])
+    below, above = (Scanned(value, gi=scan._run(value).gi_closing) for value in (1.0, 2.0))
     found = scan.crossing(below, above, tolerance)
     low, high = found.bracket
     assert low <= exact <= high
@@ -163,7 +163,8 @@ def test_bisection_keeps_the_half_in_which_folds_begin_to_be_seen(
 
 def test_an_index_at_the_level_is_smooth_in_the_bisection_too() -> None:
     scan, _ = visible(lambda value: 1.1 if value < 1.75 else 1.2)
-    found = scan.crossing(*scan.scan([1.0, 2.0]), 0.05)
+    ends = (Scanned(value, gi=scan._run(value).gi_closing) for value in (1.0, 2.0))
+    found = scan.crossing(*ends, 0.05)
     assert found.bracket[0] < 1.75 <= found.bracket[1]
 
 

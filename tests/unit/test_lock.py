@@ -74,7 +74,7 @@ def test_unreadable_owner_is_no_obstacle(tmp_path: Path, text: str) -> None:
     (tmp_path / OWNER).write_text(text, encoding="latin-1")
     assert not has_owner(tmp_path)
     with run_lock(tmp_path) as note:
-        assert "unknown number" in note
+        assert "unknown process" in note
 
 
 def test_an_owner_on_another_machine_counts_as_alive(tmp_path: Path) -> None:

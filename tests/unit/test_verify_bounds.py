@@ -128,9 +128,9 @@ def test_a_jump_is_an_increment_that_left_an_unstable_state_or_could_not_be_smal
     ],
 )
 def test_numbers_are_the_same_up_to_rounding(stored: object, found: object, is_same: bool) -> None:
-    assert (not list(_differences({"a": {"b": stored}}, {"a": {"b": found}}, ""))) is is_same
+    assert (not list(_differences({"a": {"b": stored}}, {"a": {"b": found}}, "", 1.0))) is is_same
 
 
 def test_a_number_that_one_side_lacks_is_a_difference() -> None:
-    assert len(list(_differences({"a": 1, "b": 2}, {"a": 1}, ""))) == 1
-    assert len(list(_differences({"a": 1}, {"a": 1, "b": 2}, ""))) == 1
+    assert len(list(_differences({"a": 1, "b": 2}, {"a": 1}, "", 1.0))) == 1
+    assert len(list(_differences({"a": 1}, {"a": 1, "b": 2}, "", 1.0))) == 1
