@@ -167,7 +167,7 @@ def test_a_key_that_leads_out_of_a_study_is_refused(tmp_path: Path) -> None:
 
     names = ("key", "config_hash", "solver_version", "status", "reason", "advice")
     pq.write_table(pa.table({name: ["../../else"] for name in names}), tmp_path / "results.parquet")
-    with pytest.raises(HistoryError, match="no key of a run"):
+    with pytest.raises(HistoryError, match="not the key of a run"):
         read_results(tmp_path)
     with pytest.raises(HistoryError, match="no complete run"):
         final_state(tmp_path, "../../else")
