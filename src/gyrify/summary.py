@@ -118,10 +118,10 @@ def _summary(history: History, measures: Measures) -> dict[str, Any]:
             "parameters": _parameters(history.config),
         }
     )
-    summary["units"] = {name: UNITS[name] for name in _flat_names(summary) if name in UNITS}
     is_complete = history.status == "completed"
     summary["expected"] = expected_onset(history.config).as_dict()
     summary["converged"] = convergence(history.config, measures.gi_closing, is_complete=is_complete)
+    summary["units"] = {name: UNITS[name] for name in _flat_names(summary) if name in UNITS}
     summary["warnings"] = [*config_warnings(history.config), *run_warnings(history, summary)]
     return summary
 

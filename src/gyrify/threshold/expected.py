@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gyrify.errors import GyrifyError
+from gyrify.theory import BaseState, base_state, stability_margin
 from gyrify.threshold.parameters import configured
 from gyrify.validity.expected import annulus_of, expected_onset
 
 if TYPE_CHECKING:
     from gyrify.config import Config
-    from gyrify.theory import BaseState
     from gyrify.threshold.result import Crossing
 
 # Relative difference between a critical value of the mesh and the exact one from which it is told.
@@ -81,8 +81,6 @@ class _RingJudge(_Judge):
         self._guess: BaseState | None = None
 
     def __call__(self, value: float) -> bool:
-        from gyrify.theory import base_state, stability_margin
-
         if self.parameter == "growth.time":
             annulus, time = annulus_of(self.config), value
         else:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from gyrify.config import Config
 
-# Poisson ratio from which linear triangles lose a tenth of the gyrification index and more to locking, on the
-# mesh of the standard slice (docs/validity.md has the measurement).
+# Poisson ratio from which linear triangles lose about a tenth of the gyrification index to locking, and more
+# above, on the mesh of the standard slice (docs/validity.md has the measurement).
 LOCKING_POISSON_RATIO: Final = 0.47
 
 
@@ -26,5 +26,5 @@ def locking(config: Config) -> list[str]:
     return [
         f'mesh.element = "linear" locks at material.{key} = {highest:g}: linear triangles that hardly change '
         "their volume can hardly bend, and folds come out too shallow (from 0.47 on, the gyrification index "
-        f"is a tenth too low or more on the mesh of the standard slice). Set {advice}."
+        f"is about a tenth too low or more on the mesh of the standard slice). Set {advice}."
     ]
