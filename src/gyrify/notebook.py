@@ -135,6 +135,8 @@ def _lines(summary: dict[str, Any]) -> list[tuple[str, str]]:
         ("thickness at crowns [mm]", _number(thickness["crown"])),
         ("thickness at fundi [mm]", _number(thickness["fundus"])),
         ("contour [mm]", _number(summary["contour_length_mm"])),
+        ("mesh", summary["converged"]["sentence"]),
+        *(("warning", sentence) for sentence in summary["warnings"]),
         ("growth time", _number(summary["growth_time"])),
         ("increments", str(solver["increments"])),
         ("time [s]", _number(solver["wall_s"])),

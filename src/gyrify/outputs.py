@@ -17,6 +17,7 @@ from gyrify.store.faults import storage_faults
 from gyrify.store.history import History
 from gyrify.store.vtkhdf import write_vtkhdf
 from gyrify.summary import summarise, write_metrics, write_summary
+from gyrify.validity.converged import mark
 
 
 def write_outputs(history: History, folder: str | Path) -> dict[str, Any]:
@@ -108,6 +109,7 @@ def folded_picture(history: History, summary: dict[str, Any]) -> Figure:
         gi=summary["gi"]["closing"],
         n_gyri=summary["n_gyri"],
         title=title,
+        mark=mark(summary["converged"], len(summary["warnings"])),
         period=mesh.period,
     )
 

@@ -29,6 +29,8 @@ from gyrify.store.files import fresh
 from gyrify.store.history import History
 from gyrify.units import UNITS
 from gyrify.validity import config_warnings, run_warnings
+from gyrify.validity.converged import convergence
+from gyrify.validity.expected import expected_onset
 
 __all__ = [
     "measure_state",
@@ -116,6 +118,9 @@ def _summary(history: History, measures: Measures) -> dict[str, Any]:
             "parameters": _parameters(history.config),
         }
     )
+    is_complete = history.status == "completed"
+    summary["expected"] = expected_onset(history.config).as_dict()
+    summary["converged"] = convergence(history.config, measures.gi_closing, is_complete=is_complete)
     summary["units"] = {name: UNITS[name] for name in _flat_names(summary) if name in UNITS}
     summary["warnings"] = [*config_warnings(history.config), *run_warnings(history, summary)]
     return summary

@@ -42,8 +42,8 @@ LAZY = {
     ("store", "store"): "h5py is loaded when it is needed",
     ("study", "outputs"): "pictures are drawn only where a study keeps whole run folders",
 }
-# The command line answers at once, so that it imports what a command needs when it runs.
-MAY_BE_LAZY = {"cli", "notebook", "outputs"}
+# The command line answers at once, so that it imports what a command needs when it runs; so do its warnings.
+MAY_BE_LAZY = {"cli", "notebook", "outputs", "validity"}
 LONGEST_FILE, LONGEST_FUNCTION = 300, 60
 
 

@@ -37,7 +37,7 @@ def test_a_run_writes_its_folder_and_says_what_it_came_to(toml: str, tmp_path: P
     assert {file.name for file in (tmp_path / "run").iterdir()} >= WRITTEN
     assert out.startswith("GI ")
     assert str(tmp_path / "run") in out
-    lines = [line for line in err.splitlines() if "growth time" in line]
+    lines = [line for line in err.splitlines() if line.startswith("gyrify: growth time")]
     assert 8 <= len(lines) <= 11
     pattern = (
         r"gyrify: growth time [\d.]+ of 500, GI \d\.\d{3}, increment \d+, \d+ iterations, about \d+ s left"

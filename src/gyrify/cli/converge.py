@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, STOPPED
 from gyrify.cli.options import cores, number
 from gyrify.cli.overrides import ConfigPath, Overrides, Text
-from gyrify.cli.streams import complain, print_json
+from gyrify.cli.streams import complain, print_json, warn
 from gyrify.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -80,6 +80,7 @@ def converge(
     from gyrify.report.convergence import write_pictures
 
     write_pictures(found, folder)
+    warn(found.warnings)
     print_json(found.as_dict()) if json else _report(found, folder)
     return _EXIT_CODES[found.status]
 

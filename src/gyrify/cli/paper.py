@@ -12,7 +12,7 @@ from cyclopts import Parameter
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, STOPPED
 from gyrify.cli.interrupts import ends_are_interrupts
 from gyrify.cli.options import cores
-from gyrify.cli.streams import complain, print_json, say
+from gyrify.cli.streams import complain, print_json, say, warn
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -115,8 +115,15 @@ def _one(bench: Bench, base: Config, reading: Reading, begun: float, seed: int, 
     bench.write()
     write_report(found, bench.stored, bench.folder)
     wall_s = time.perf_counter() - begun
+    from gyrify.study.outcome import warnings_of
+
+    warnings = [
+        f"{len(keys)} of {len(bench.records)} runs: {said}"
+        for said, keys in warnings_of(bench.records).items()
+    ]
+    warn(warnings)
     if json:
-        print_json(found.scoreboard.as_dict(wall_s))
+        print_json({**found.scoreboard.as_dict(wall_s), "warnings": warnings})
     else:
         _show(found)
         say(f"{len(bench.records)} runs, {bench.computed} of them now, {wall_s:.0f} s.")

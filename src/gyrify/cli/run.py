@@ -181,6 +181,12 @@ def _tell_end(summary: dict[str, Any], fraction: float, folder: Path, told: Sequ
     warn(warning for warning in summary["warnings"] if warning not in told)
 
 
+def _check_command(summary: dict[str, Any], folder: Path) -> str:
+    """How to check the mesh, from where the user is."""
+    command: str = summary["converged"]["command"]
+    return command.replace("config.toml", quote(str(folder / "config.toml")), 1)
+
+
 def _report(summary: dict[str, Any], folder: Path) -> None:
     from gyrify.config.words import decimals
 
@@ -190,6 +196,7 @@ def _report(summary: dict[str, Any], folder: Path) -> None:
         f"GI {gi['closing']:.3f} (closing of {gi['closing_radius_mm']:g} mm), {gi['hull']:.3f} (hull); "
         f"{summary['n_gyri']} gyri; {sulci}."
     )
+    say(f"{summary['converged']['sentence']} Check: {_check_command(summary, folder)}")
     solver = summary["solver"]
     say(
         f"{solver['increments']} increments, {solver['newton_iterations']} iterations, "

@@ -12,7 +12,7 @@ from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, STOPPED
 from gyrify.cli.interrupts import ends_are_interrupts
 from gyrify.cli.options import cores
 from gyrify.cli.overrides import STANDARD_INPUT
-from gyrify.cli.streams import complain, print_json, say
+from gyrify.cli.streams import complain, print_json, say, warn
 from gyrify.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -78,6 +78,7 @@ def study(
         if json:
             print_json({"error": "Interrupted", "message": said, "advice": advice})
         return INTERRUPTED
+    warn(_warnings(result))
     if json:
         print_json({**result.as_dict(), "pictures": [str(path) for path in pictures]})
     else:
@@ -95,6 +96,18 @@ def _described(file: Path, out: Path | None) -> Study:
     if out is None:
         raise ConfigError("A study from standard input has no name for its folder.", "Add --out DIR.")
     return Study.from_mapping(toml_text.parse(toml_text.read_standard_input(), "Standard input"))
+
+
+def _warnings(result: StudyResult) -> list[str]:
+    """How many runs have warnings, and those that most of them have."""
+    found = result.warnings
+    keys = {key for keys in found.values() for key in keys}
+    if not keys:
+        return []
+    often = sorted(found, key=lambda said: -len(found[said]))[:_SHOWN]
+    total = len(result.points)
+    told = f"{len(keys)} of {total} runs have warnings: the column warnings of the results has all."
+    return [told, *(f"{len(found[said])} of {total} runs: {said}" for said in often)]
 
 
 def _draw(folder: Path) -> Sequence[Path]:

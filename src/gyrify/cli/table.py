@@ -64,6 +64,7 @@ def table(
         _print_csv(rows)
     else:
         _print_table(rows if columns.strip() else _brief(rows))
+        say(f"{rows.num_rows} runs{_warned(rows)}")
 
 
 def _print_csv(rows: Table) -> None:
@@ -94,7 +95,14 @@ def _print_table(rows: Table) -> None:
     for row in zip(*(column.to_pylist() for column in rows.columns), strict=True):
         grid.add_row(*(escape(_shown(value)) for value in row))
     console.print(grid)
-    say(f"{rows.num_rows} runs")
+
+
+def _warned(rows: Table) -> str:
+    """How many runs have warnings, where these are among the columns."""
+    if "warnings" not in rows.column_names or str(rows.schema.field("warnings").type) != "string":
+        return ""
+    number = sum(bool(text) for text in rows["warnings"].to_pylist())
+    return f", {number} with warnings: see --columns key,warnings" if number else ""
 
 
 def _shown(value: Any) -> str:

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from gyrify.cli.codes import COMPLETED, STOPPED
+from gyrify.cli.codes import COMPLETED, FAILED, STOPPED
 from gyrify.cli.options import cores, number
 from gyrify.cli.overrides import ConfigPath, Overrides, Text
-from gyrify.cli.streams import complain, print_json, say
+from gyrify.cli.streams import complain, print_json, say, warn
 from gyrify.errors import LimitReachedError
 
 if TYPE_CHECKING:
@@ -74,11 +74,12 @@ def threshold(
         return STOPPED
     for note in found.notes:
         complain(f"Note: {note}")
+    warn(found.warnings)
     if json:
         print_json(found.as_dict())
     else:
         _report(found)
-    return COMPLETED
+    return COMPLETED if found.is_known else FAILED
 
 
 def _report(found: Threshold) -> None:
@@ -93,5 +94,6 @@ def _report(found: Threshold) -> None:
         value = f"{crossing.value:.6g} {unit}".rstrip()
         say(f"{found.parameter} = {value}: becomes {crossing.becomes} above{wave}.")
     if found.critical_value is None:
-        say(f"Nothing is critical. {found.reason}")
+        is_sure = found.is_known and not found.unsolved and not found.reason.startswith("Nothing is critical")
+        say(f"Nothing is critical. {found.reason}" if is_sure else found.reason)
     say(f"{found.evaluations} evaluations, {found.wall_s:.1f} s.")

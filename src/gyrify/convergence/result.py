@@ -35,6 +35,8 @@ class Level:
         By the keys of `gyrify.convergence.METRICS`; empty unless it completed.
     wall_s : float
         Time spent solving [s].
+    warnings : tuple of str
+        What a reader of its numbers should not overlook.
     """
 
     config: Config
@@ -43,6 +45,7 @@ class Level:
     reason: str
     metrics: dict[str, float | None]
     wall_s: float
+    warnings: tuple[str, ...] = ()
 
     @property
     def is_complete(self) -> bool:
@@ -179,6 +182,16 @@ class Convergence:
         """
         return next(family for family in self.families if family.subject == subject)
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Warnings of the runs, each with the levels that it holds for."""
+        levels: dict[str, dict[str, None]] = {}
+        for family in self.families:
+            for level in family.levels:
+                for sentence in level.warnings:
+                    levels.setdefault(sentence, {})[level.name(family.subject)] = None
+        return tuple(f"{', '.join(names)}: {sentence}" for sentence, names in levels.items())
+
     def as_dict(self) -> dict[str, Any]:
         """Fields nested as in ``gyrify converge --json``."""
         return {
@@ -186,6 +199,7 @@ class Convergence:
             "config_hash": self.config.config_hash,
             "tolerance": self.tolerance,
             "rule": RULE,
+            "warnings": list(self.warnings),
             "families": [family.as_dict() for family in self.families],
             "wall_s": self.wall_s,
         }

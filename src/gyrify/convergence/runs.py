@@ -48,7 +48,8 @@ def complete(config: Config, watch: Watcher = go_on, *, folder: Path) -> Level:
             _grow(config, target, watch)
         history = History.load(target)
         if history.status == "completed":
-            return Level(config, target, "completed", "", measured(history), history.wall_s)
+            warnings = tuple(summarise(history)["warnings"])
+            return Level(config, target, "completed", "", measured(history), history.wall_s, warnings)
         reason = f"{history.reason} {history.advice}".strip()
         return Level(config, target, history.status, reason, {}, history.wall_s)
     except GyrifyError as failure:

@@ -166,6 +166,13 @@ def resample(contour: FloatArray, samples: int, *, keep_vertices: bool = False) 
     return np.column_stack([np.interp(at, arc, ring[:, 0]), np.interp(at, arc, ring[:, 1])])
 
 
+def vertex_numbers(contour: FloatArray, samples: int) -> FloatArray:
+    """Return where the points of `resample` with vertices lie, counted in vertices from the first one."""
+    arc = np.concatenate([[0.0], np.cumsum(edge_lengths(contour))])
+    at = np.sort(np.concatenate([np.arange(samples) * (arc[-1] / samples), arc[1:-1]]))
+    return np.asarray(np.interp(at, arc, np.arange(len(arc))), dtype=np.float64)
+
+
 def ring_vertices(ring: shapely.LinearRing) -> FloatArray:
     """Return the (n, 2) vertices of a ring, the first one not repeated."""
     vertices: FloatArray = shapely.get_coordinates(ring)[:-1]

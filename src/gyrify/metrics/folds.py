@@ -15,9 +15,11 @@ from gyrify.metrics.contour import (
     require_positive,
     resample,
     ring_vertices,
+    vertex_numbers,
 )
 from gyrify.metrics.order import ordered_contour
 from gyrify.metrics.peaks import prominent_maxima
+from gyrify.metrics.sawtooth import without_sawteeth
 from gyrify.metrics.sulci import has_sulcus
 
 # Undulations with up to this many periods around the brain are its shape; folds are five or more.
@@ -77,12 +79,15 @@ class Folds:
     crowns, fundi : (n_gyri,) int arrays
         Indices into ``points`` of the gyral crowns and sulcal fundi, ascending; they alternate along the
         contour.
+    n_sawteeth : int
+        Crowns that are no gyri, because they follow the points of the contour (`gyrify.metrics.sawtooth`).
     """
 
     points: FloatArray
     displacement: FloatArray
     crowns: NDArray[np.int64]
     fundi: NDArray[np.int64]
+    n_sawteeth: int = 0
 
     @property
     def n_gyri(self) -> int:
@@ -157,10 +162,12 @@ def folds_about(
     """`find_folds` about a shape that is known already; without a hull, bumps without sulci count too."""
     points = resample(contour, samples, keep_vertices=True)
     displacement = shape.displacement(points)
-    crowns, fundi = periodic_extrema(displacement, prominence)
+    extrema = periodic_extrema(displacement, prominence)
+    numbers = vertex_numbers(contour, samples)
+    crowns, fundi, n_sawteeth = without_sawteeth(displacement, numbers, len(contour), *extrema)
     if hull is not None and not has_sulcus(points[fundi], hull, prominence):
         crowns = fundi = np.empty(0, dtype=np.int64)
-    return Folds(points, displacement, crowns, fundi)
+    return Folds(points, displacement, crowns, fundi, n_sawteeth)
 
 
 def low_mode_shape(contour: ArrayLike) -> LowModeShape:

@@ -26,6 +26,7 @@ from gyrify.metrics.gap import DETOUR
 from gyrify.metrics.gyri import gyrus_shapes
 from gyrify.metrics.gyrification import at_least_hull, closing_length, exposed_length
 from gyrify.metrics.measures import Measures
+from gyrify.metrics.sawtooth import without_sawteeth
 from gyrify.metrics.sharpness import fold_sharpness
 from gyrify.metrics.sulci import depth_below
 from gyrify.metrics.thickness import thickness_at_folds
@@ -104,7 +105,14 @@ def _folds(line: FloatArray, period: float, prominence: float, samples: int) -> 
     height = np.append(line[:, 1], end[1])
     level = float(np.sum(np.diff(arc) * 0.5 * (height[1:] + height[:-1])) / arc[-1])
     above = points[:, 1] - level
-    return Folds(points, above, *periodic_extrema(above, prominence))
+    vertex = np.interp(at, arc, np.arange(len(arc)))
+    found = without_sawteeth(above, vertex, len(line), *periodic_extrema(above, prominence))
+    return Folds(points, above, *found)
+
+
+def strip_sawteeth(contour: FloatArray, period: float, prominence: float, samples: int) -> int:
+    """Crowns of one period that are no gyri; parameters as in `gyrify.metrics.measure`."""
+    return _folds(_from_lowest(contour, period), period, prominence, samples).n_sawteeth
 
 
 def strip_closing_outline(contour: FloatArray, period: float, closing_radius: float) -> list[FloatArray]:

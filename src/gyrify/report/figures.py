@@ -36,6 +36,7 @@ def folded_figure(
     gi: float | None = None,
     n_gyri: int | None = None,
     title: str = "",
+    mark: str = "",
     width_mm: float = 90.0,
     period: float | None = None,
 ) -> Figure:
@@ -58,6 +59,8 @@ def folded_figure(
         Gyrification index by that closing and number of gyri, to be printed.
     title : str
         Written above the picture, wrapped to its width.
+    mark : str
+        What a reader of the numbers must know, below them.
     width_mm : float
         Width of the figure [mm]; 90 is one column of most journals.
     period : float, optional
@@ -79,6 +82,7 @@ def folded_figure(
     slice_arrays = (x, triangles, tissue, outer, inner, closing_radius)
     sheet = closed_sheet(*slice_arrays) if period is None else periodic_sheet(*slice_arrays, period)
     text = header(title, _index_text(gi, n_gyri, closing_radius), width_mm)
+    text += [(mark, 7, "normal")] if mark else []
     holes = [x[[*loop, loop[0]]] for loop in _holes(triangles, outer)]
     return _drawn(sheet, text, [sheet.floor] if sheet.is_periodic else holes, width_mm)
 

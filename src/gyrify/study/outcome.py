@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -59,6 +59,25 @@ def _cell(value: object) -> str:
 StudyObserver = Callable[[StudyProgress], None]
 
 
+def warnings_of(records: Mapping[str, Record]) -> dict[str, list[str]]:
+    """Keys of the runs that a warning holds for, by its sentence.
+
+    Parameters
+    ----------
+    records : mapping
+        What each run came to, by key.
+
+    Returns
+    -------
+    dict
+    """
+    found: dict[str, list[str]] = {}
+    for key, record in records.items():
+        for sentence in (record.summary or {}).get("warnings", ()):
+            found.setdefault(sentence, []).append(key)
+    return found
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class StudyResult:
     """A study that has ended.
@@ -101,6 +120,11 @@ class StudyResult:
         return {key: f"{r.reason} {r.advice}".strip() for key, r in found if r.status != "completed"}
 
     @property
+    def warnings(self) -> dict[str, list[str]]:
+        """Keys of the points that a warning holds for, by its sentence."""
+        return warnings_of({point.key: self.records[point.key] for point in self.points})
+
+    @property
     def status(self) -> str:
         """``completed``, or what became of points that did not complete: ``failed`` before ``stopped``."""
         found = {record.status for record in self.records.values()}
@@ -130,6 +154,7 @@ class StudyResult:
             "computed": self.computed,
             "completed": len(self.points) - len(self.failures),
             "failures": [{"key": key, "reason": reason} for key, reason in self.failures.items()],
+            "warnings": [{"warning": said, "keys": keys} for said, keys in self.warnings.items()],
             "solver_version": solver_version(),
             "wall_s": self.wall_s,
         }

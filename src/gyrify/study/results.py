@@ -34,6 +34,13 @@ _LEFT_OUT: Final = {
     "stability_changes",
     "parameters",
     "units",
+    "expected_theory",
+    "expected_not_covered",
+    "converged_known",
+    "converged_converged",
+    "converged_limit",
+    "converged_sentence",
+    "converged_command",
 }
 # What an incomplete run has too.
 _OF_ANY_END: Final = ("growth_time", "solver_")
@@ -72,6 +79,11 @@ QUANTITIES: Final = {
     "relaxed_is_kept": _BOOL,
     "stable": _BOOL,
     "stability_note": _TEXT,
+    "expected_growth_time": _FLOAT,
+    "expected_mode_number": _INT,
+    "expected_wavelength_mm": _FLOAT,
+    "converged_error": _FLOAT,
+    "warnings": _TEXT,
     "solver_increments": _INT,
     "solver_newton_iterations": _INT,
     "solver_factorizations": _INT,
@@ -213,6 +225,8 @@ def flat(nested: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
 
 def _row(point: Point, record: Record, varied: Iterable[str]) -> dict[str, Any]:
     summary = record.summary or {}
+    if "warnings" in summary:
+        summary = {**summary, "warnings": "\n".join(summary["warnings"])}
     quantities = flat(
         {key: value for key, value in summary.items() if key not in _LEFT_OUT and value is not None}
     )

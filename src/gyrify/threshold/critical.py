@@ -11,12 +11,16 @@ from gyrify.config import Config, ConfigLike, as_config
 from gyrify.errors import ConfigError
 from gyrify.limits import Watch
 from gyrify.pool import MAX_WORKERS
+from gyrify.threshold.expected import differences, expected_crossings
 from gyrify.threshold.parameters import PARAMETERS, Range, scan_values
 from gyrify.threshold.result import Crossing, Definition, Scanned, Threshold, main_crossing
 from gyrify.threshold.stability import StabilityScan
 from gyrify.threshold.visible import VisibleScan
+from gyrify.validity.expected import expected_onset
+from gyrify.validity.locking import locking
 
 # Relative tolerance of a crossing, by definition.
+_FINER = "Repeat it with mesh.refine = 1, and see how far it moves."
 TOLERANCE: dict[str, float] = {"stability": 1e-6, "visible": 0.01}
 
 
@@ -101,12 +105,18 @@ def _find(
         if _is_beyond(below, level) != _is_beyond(above, level)
     )
     main, edges = main_crossing(crossings), _edges(parameter, scanned, crossings, level, tolerance)
+    unsolved = _unsolved(values, scanned)
+    if visible and parameter == "growth.time":  # one run, read at its own increments
+        unsolved = ()
+    exact = None if visible else expected_crossings(config, parameter, values)
     return Threshold(
         parameter=parameter,
         definition=definition,
         critical_value=main.value if main else None,
-        reason="" if main else _reason(parameter, scanned, level, visible),
+        reason="" if main else _reason(parameter, scanned, level, visible, unsolved, exact),
         notes=(*scan.notes, *edges),
+        warnings=_warnings(config, parameter, crossings, exact, unsolved),
+        unsolved=unsolved,
         bracket=main.bracket if main else None,
         mode_number=main.mode_number if main else None,
         wavelength_mm=main.wavelength_mm if main else None,
@@ -170,8 +180,44 @@ def _ordered(crossings: Sequence[Crossing]) -> tuple[Crossing, ...]:
     return tuple(sorted(crossings, key=lambda crossing: crossing.value))
 
 
-def _reason(parameter: str, scanned: Sequence[Scanned], level: float, visible: bool) -> str:
-    """Why nothing is critical."""
+def _unsolved(values: Sequence[float], scanned: Sequence[Scanned]) -> tuple[float, ...]:
+    """Values that were to be scanned and of which nothing is known."""
+    known = {point.value for point in scanned if _is_known(point)}
+    return tuple(value for value in values if value not in known)
+
+
+def _warnings(
+    config: Config,
+    parameter: str,
+    crossings: Sequence[Crossing],
+    exact: Sequence[float] | None,
+    unsolved: Sequence[float],
+) -> tuple[str, ...]:
+    """What a reader of the answer should not overlook."""
+    found = [*locking(config)]
+    if unsolved:
+        found.append(
+            f"{_listed(unsolved)} of {parameter} could not be solved: a crossing there is not seen. "
+            "Scan another range, or raise mesh.n_around."
+        )
+    advice = "Change the element first." if locking(config) else _FINER
+    return (*found, *differences(parameter, expected_onset(config).theory, exact, crossings, advice))
+
+
+def _listed(values: Sequence[float]) -> str:
+    shown = ", ".join(f"{value:.5g}" for value in values[:5]) + (" …" if len(values) > 5 else "")
+    return f"{len(values)} {'value' if len(values) == 1 else 'values'} ({shown})"
+
+
+def _reason(
+    parameter: str,
+    scanned: Sequence[Scanned],
+    level: float,
+    visible: bool,
+    unsolved: Sequence[float],
+    exact: Sequence[float] | None,
+) -> str:
+    """Why there is no critical value: nothing is critical, or nothing is known."""
     scanned = [point for point in scanned if _is_known(point)]
     if len(scanned) < 2:
         return (
@@ -180,10 +226,20 @@ def _reason(parameter: str, scanned: Sequence[Scanned], level: float, visible: b
         )
     unit = PARAMETERS[parameter].unit
     low, high = scanned[0].value, scanned[-1].value
-    where = f"at all {len(scanned)} values of {parameter} from {low:.6g} to {high:.6g} {unit}".rstrip()
     beyond = _is_beyond(scanned[0], level)
     if visible:
         outcome = f"The gyrification index is {'above' if beyond else 'at most'} {level:g}"
     else:
         outcome = f"The smooth state is {'unstable' if beyond else 'stable'}"
+    where = f"at all {len(scanned)} values of {parameter} from {low:.6g} to {high:.6g} {unit}".rstrip()
+    if unsolved:
+        return (
+            f"Whether anything is critical is unknown: {_listed(unsolved)} could not be solved. {outcome} at "
+            "the others. Scan another range, or raise mesh.n_around."
+        )
+    if exact:
+        return (
+            "Nothing is critical on this mesh, but exact theory has a crossing in this range. "
+            f"{outcome} {where}. Refine the mesh."
+        )
     return f"{outcome} {where}. Scan another range, or more points."

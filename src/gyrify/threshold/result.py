@@ -73,11 +73,15 @@ class Threshold:
         What critical means.
     critical_value : float or None
         The first crossing at which the slice becomes unstable (or folded) as the parameter rises, or else
-        the first of the others; None where nothing is critical.
+        the first of the others; None where nothing is critical, or nothing is known.
     reason : str
-        Why nothing is critical; else empty.
+        Why there is none; else empty.
     notes : tuple of str
         What limits the answer.
+    warnings : tuple of str
+        What a reader should not overlook: values that could not be solved, and where exact theory disagrees.
+    unsolved : tuple of float
+        Values of the scan of which nothing is known.
     bracket : (float, float) or None
         The closest values known to lie on either side of the critical one.
     mode_number, wavelength_mm, growth_time
@@ -102,6 +106,8 @@ class Threshold:
     critical_value: float | None
     reason: str
     notes: tuple[str, ...]
+    warnings: tuple[str, ...]
+    unsolved: tuple[float, ...]
     bracket: tuple[float, float] | None
     mode_number: int | None
     wavelength_mm: float | None
@@ -129,6 +135,11 @@ class Threshold:
             for c in self.crossings
         ]
         return html_rows(repr(self), rows, (self.parameter, "becomes", "mode number", "wavelength [mm]"))
+
+    @property
+    def is_known(self) -> bool:
+        """Whether anything could be computed: two points of the scan at least."""
+        return sum(point.n_negative is not None or point.gi is not None for point in self.scan) > 1
 
     def as_dict(self) -> dict[str, Any]:
         """Return the fields nested as in ``gyrify threshold --json``."""

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final
 
+from gyrify.validity.collapse import collapse
+from gyrify.validity.folding import sawtooth, smooth_against_theory
+
 if TYPE_CHECKING:
     from gyrify.store.history import History
 
@@ -32,7 +35,8 @@ def run_warnings(history: History, summary: dict[str, Any]) -> list[str]:
     return [sentence for check in CHECKS for sentence in check(history, summary)]
 
 
-def _resolution(_: History, summary: dict[str, Any]) -> list[str]:
+def fold_resolution(_: History, summary: dict[str, Any]) -> list[str]:
+    """Warn of folds that few points of the contour make up."""
     nodes = summary["nodes_per_wavelength"]
     if nodes is None or nodes >= POINTS_PER_FOLD:
         return []
@@ -42,19 +46,22 @@ def _resolution(_: History, summary: dict[str, Any]) -> list[str]:
     ]
 
 
-def _crossing(_: History, summary: dict[str, Any]) -> list[str]:
+def crossing(_: History, summary: dict[str, Any]) -> list[str]:
+    """Warn of a contour that crosses itself."""
     if not summary["self_intersecting"]:
         return []
     return ["The contour crosses itself: the state is not physical. Set contact.enabled = true."]
 
 
-def _stability(_: History, summary: dict[str, Any]) -> list[str]:
+def stability(_: History, summary: dict[str, Any]) -> list[str]:
+    """Warn of a last state that is no stable one."""
     note = summary["stability_note"]
     is_told = any(words in note for words in ("unstable equilibrium", "not known", "held by dissipation"))
     return [note] if is_told else []
 
 
-def _symmetry(history: History, summary: dict[str, Any]) -> list[str]:
+def symmetry(history: History, summary: dict[str, Any]) -> list[str]:
+    """Warn of folds that are stable only as long as they are mirror-symmetric."""
     if history.config.mesh.split != "symmetric" or summary["stable"] is not False:
         return []
     return [
@@ -63,7 +70,8 @@ def _symmetry(history: History, summary: dict[str, Any]) -> list[str]:
     ]
 
 
-def _dents(history: History, summary: dict[str, Any]) -> list[str]:
+def dents(history: History, summary: dict[str, Any]) -> list[str]:
+    """Warn of gyri whose sulci the disc of the closing enters."""
     deepest, prominence = summary["sulcal_depth_mm"]["max"], history.config.metrics.gyrus_prominence
     if summary["n_gyri"] == 0 or deepest >= NEGLIGIBLE * prominence:
         return []
@@ -75,9 +83,12 @@ def _dents(history: History, summary: dict[str, Any]) -> list[str]:
 
 
 CHECKS: Final[tuple[Callable[[History, dict[str, Any]], list[str]], ...]] = (
-    _resolution,
-    _crossing,
-    _stability,
-    _symmetry,
-    _dents,
+    fold_resolution,
+    crossing,
+    stability,
+    symmetry,
+    dents,
+    smooth_against_theory,
+    sawtooth,
+    collapse,
 )

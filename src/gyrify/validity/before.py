@@ -6,7 +6,9 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
 from gyrify.validity.lengths import check_lengths
+from gyrify.validity.locking import locking
 from gyrify.validity.ranges import check_ranges
+from gyrify.validity.resolution import resolution
 
 if TYPE_CHECKING:
     from gyrify.config import Config
@@ -14,6 +16,8 @@ if TYPE_CHECKING:
 CHECKS: Final[tuple[Callable[[Config], list[str]], ...]] = (
     check_ranges,
     check_lengths,
+    resolution,
+    locking,
 )
 
 

@@ -23,7 +23,16 @@ METRIC_BOUND: Final = 1e-9
 ROUNDING: Final = 1e-12
 # Keys of a summary that older versions did not write.
 LATER_KEYS: Final = frozenset(
-    {"warnings", "stability_changes", "visible_growth_time", "relaxed", "parameters", "units"}
+    {
+        "warnings",
+        "expected",
+        "converged",
+        "stability_changes",
+        "visible_growth_time",
+        "relaxed",
+        "parameters",
+        "units",
+    }
 )
 
 

@@ -38,7 +38,7 @@ def about(history: History, name: str, summary: dict[str, Any]) -> dict[str, Any
         "reason": summary["reason"],
         "advice": summary["advice"],
         "warnings": summary["warnings"],
-        "note": summary["stability_note"],
+        "note": " ".join(filter(None, (summary["stability_note"], _checked(summary)))),
         "numbers": numbers(summary),
         "onset": summary["onset"],
         "settings": settings(config),
@@ -48,6 +48,12 @@ def about(history: History, name: str, summary: dict[str, Any]) -> dict[str, Any
         "toml": config.to_toml(),
         "command": f"gyrify run config.toml --out {quote(name)}",
     }
+
+
+def _checked(summary: dict[str, Any]) -> str:
+    """Whether the mesh is known to be converged for the numbers, and how to find out."""
+    found = summary["converged"]
+    return f"{found['sentence']} Check: {found['command']}"
 
 
 def subtitle(config: Config) -> str:
@@ -65,7 +71,10 @@ def subtitle(config: Config) -> str:
 def numbers(summary: dict[str, Any]) -> list[list[Any]]:
     """Label, value, unit, decimals (None: as needed) and explanation of what the run came to."""
     gi, depth, thickness, onset = (summary[key] for key in ("gi", "sulcal_depth_mm", "thickness_mm", "onset"))
-    closing = f"Contour over the outline of the closing with radius {gi['closing_radius_mm']:g} mm"
+    sentence = summary["converged"]["sentence"]
+    closing = (
+        f"Contour over the outline of the closing with radius {gi['closing_radius_mm']:g} mm. {sentence}"
+    )
     found = [
         ["GI, closing", gi["closing"], "", 3, closing],
         ["GI, hull", gi["hull"], "", 3, "Contour over the perimeter of the convex hull"],

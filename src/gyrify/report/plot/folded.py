@@ -53,6 +53,7 @@ def _one(state: Shown, width_mm: float) -> Figure:
         gi=state.measures.gi_closing,
         n_gyri=state.measures.n_gyri,
         title=f"{title} ({state.note})" if state.note else title,
+        mark=state.mark,
         width_mm=width_mm,
         period=mesh.period,
     )

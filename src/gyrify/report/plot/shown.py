@@ -16,6 +16,7 @@ from gyrify.metrics import Measures
 from gyrify.report.sheet import FloatArray, Sheet, closed_sheet, periodic_sheet
 from gyrify.store.history import History
 from gyrify.summary import measure_state
+from gyrify.validity.converged import convergence, mark
 
 Run = History | str | os.PathLike[str]
 # More differing parameters than this make a longer name than the folder has.
@@ -65,12 +66,18 @@ class Shown:
         return f"run {end} at {self.history.fractions[-1]:.0%} of growth"
 
     @property
+    def mark(self) -> str:
+        """Whether the mesh is known to be converged for the numbers of the state."""
+        is_end = self.history.status == "completed" and self.index == len(self.history) - 1
+        return mark(convergence(self.history.config, self.measures.gi_closing, is_complete=is_end))
+
+    @property
     def caption(self) -> str:
-        """Growth time, index and number of gyri."""
+        """Growth time, index and number of gyri, and what is known of the mesh."""
         gyri = self.measures.n_gyri
         return (
             f"t = {self.growth_time:.4g}, GI {self.measures.gi_closing:.2f}, "
-            f"{gyri} {'gyrus' if gyri == 1 else 'gyri'}"
+            f"{gyri} {'gyrus' if gyri == 1 else 'gyri'} ({self.mark})"
         )
 
 
