@@ -70,7 +70,7 @@ def test_every_picture_has_a_name_of_its_own(runs, tmp_path: Path, capsys) -> No
 
 def test_every_animation_has_a_name_of_its_own(runs, capsys) -> None:
     for field in ("tissue", "von_mises"):
-        command = ["animate", str(runs["linear"]), "--fps", "4", "--seconds", "1", "--width", "120"]
+        command = ["animate", str(runs["linear"]), "--fps", "4", "--seconds", "1", "--width", "200"]
         assert main([*command, "--field", field, "--quiet"]) == 0
     out = capsys.readouterr().out
     assert "growth.gif" in out

@@ -57,7 +57,8 @@ def test_every_quantity_of_a_summary_has_its_column(folded: History) -> None:
     summary = summarise(folded)
     known = {"status", "reason", "advice", "config_hash", "result_hash", "seed", "solver_wall_s"}
     known |= {"stability_changes", "warnings"}
-    found = {name for name in flat(summary) if not name.startswith("versions_")} - known
+    told = ("versions_", "parameters_", "units_")
+    found = {name for name in flat(summary) if not name.startswith(told)} - known
     assert found == set(QUANTITIES) - {"phenotype", "phenotype_rule"}
 
 
@@ -176,7 +177,7 @@ def test_bad_arguments_are_refused(tmp_path: Path, wrong: dict[str, Any]) -> Non
     points = SMALL.points()
     with pytest.raises(ConfigError, match="given twice"):
         run_points([points[0], points[0]], tmp_path)
-    with pytest.raises(ConfigError, match="no point"):
+    with pytest.raises(ConfigError, match="No points"):
         run_points([], tmp_path)
 
 
