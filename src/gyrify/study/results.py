@@ -267,7 +267,7 @@ def _kind(name: str, values: Sequence[object]) -> DataType:
         return pa.type_for_alias(QUANTITIES[name])
     kinds = {type(value) for value in values if value is not None}
     if not kinds:
-        return pa.string() if name == "result_hash" else pa.float64()
+        return pa.string() if name == "result_hash" or name in _IDENTITY else pa.float64()
     for kind, alias in ({bool}, _BOOL), ({int}, _INT), ({int, float}, _FLOAT):
         if kinds <= kind:
             return pa.type_for_alias(alias)
