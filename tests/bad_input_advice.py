@@ -139,6 +139,16 @@ ADVICE: dict[str, list[Way]] = {
         Way("one of the 3 white layers. Try at most that number", "[mesh]\nn_layers = 9\nrefine_cortex = 3"),
         Way("or more layers in mesh.n_layers", "[mesh]\nn_layers = 10\nrefine_cortex = 4"),
     ],
+    "symmetric-columns": [
+        Way("Try mesh.n_around = 60", '[mesh]\nn_around = 60\nsplit = "symmetric"'),
+        Way("or 64", '[mesh]\nn_around = 64\nsplit = "symmetric"'),
+    ],
+    "symmetric-branch": [
+        Way(
+            'Try mesh.split = "alternating"',
+            '[mesh]\nsplit = "alternating"\n[dissipation]\nkind = "none"\n[stability]\nfollow_branch = true',
+        )
+    ],
     "option-word": [Way("The default is 1.5", args=(*CHECK, "--thickness", "1.5"))],
     "set-key": [Way("Did you mean growth.ratio?", args=(*CHECK, "--set", "growth.ratio=2"))],
     "set-form": [Way("Write --set section.field=value", args=(*CHECK, "--set", "growth.ratio=2"))],

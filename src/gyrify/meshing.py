@@ -56,8 +56,10 @@ def _built(config: Config) -> Mesh:
 def _advice(config: Config, direction: str) -> str:
     """What to change: the nearest numbers of columns and layers of which a mesh was built well."""
     mesh, up = config.mesh, not direction.startswith("Lower")
+    # Even numbers suit the alternating split; 4 divides those of a mesh that is its own mirror image.
+    unit, ends = 4 if mesh.split == "symmetric" else 2, (_FEWEST_COLUMNS, _MOST_COLUMNS)
     tries = {
-        "mesh.n_around": _steps(mesh.n_around, 1.1 if up else 1 / 1.1, 2, (_FEWEST_COLUMNS, _MOST_COLUMNS)),
+        "mesh.n_around": _steps(mesh.n_around, 1.1 if up else 1 / 1.1, unit, ends),
         "mesh.n_layers": _steps(mesh.n_layers, 1.06, 1, (3, _MOST_LAYERS)),
         "mesh.n_cortex_layers": range(mesh.n_cortex_layers - 1, 1, -1),
     }
@@ -73,7 +75,7 @@ def _advice(config: Config, direction: str) -> str:
         (
             {"mesh.n_around": columns, "mesh.n_layers": layers}
             for layers in _MANY_LAYERS
-            for columns in _steps(mesh.n_around, 1.5 if up else 1 / 1.5, 2, (_FEWEST_COLUMNS, _MOST_COLUMNS))
+            for columns in _steps(mesh.n_around, 1.5 if up else 1 / 1.5, unit, ends)
         ),
     )
     if both:
@@ -83,7 +85,8 @@ def _advice(config: Config, direction: str) -> str:
 
 def _steps(start: int, ratio: float, unit: int, bounds: tuple[int, int]) -> list[int]:
     """Multiples of a unit ever farther from a number, in steps of a ratio or of one unit."""
-    found, value, sign = [], float(start), 1 if ratio > 1.0 else -1
+    found: list[int] = []
+    value, sign = float(start), 1 if ratio > 1.0 else -1
     while True:
         value = unit * round(max(sign * value * ratio, sign * value + unit) * sign / unit)
         if not bounds[0] <= value <= bounds[1]:

@@ -1,4 +1,4 @@
-"""Reports as they are used: by finger and mouse, on small and wide screens, light and dark, with many runs."""
+"""Reports as they are used: by finger and mouse, on small and wide screens, in light and dark, many runs."""
 
 from __future__ import annotations
 

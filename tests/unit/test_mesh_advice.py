@@ -25,6 +25,7 @@ REFUSED = {
     "a strip of wide columns": {**DEEP, "geometry.cortical_thickness": 0.02, "mesh.n_around": 24},
     "a thin cortex": {"geometry.cortical_thickness": 0.05},
     "a thin cortex, refined": {"geometry.cortical_thickness": 0.05, "mesh.refine": 1},
+    "a thin cortex, symmetric": {"geometry.cortical_thickness": 0.05, "mesh.split": "symmetric"},
     "many columns": {"mesh.n_around": 4096},
     "many columns, quadratic": {"mesh.n_around": 4096, "mesh.element": "quadratic"},
 }
