@@ -120,7 +120,7 @@ VALUES = [
     Case("schema", "a format of another version", ("schema_version = 2",), "schema_version = 2"),
 ]  # fmt: skip
 TOGETHER = [
-    Case("no-white-matter", "no white matter left", ("cortical_thickness = 16.0", "15.6053 [mm]", "thinner"), "[geometry]\ncortical_thickness = 16"),
+    Case("no-white-matter", "no white matter left", ("cortical_thickness = 16.0", "15.6053 [mm]", "Try geometry.cortical_thickness = 14.7"), "[geometry]\ncortical_thickness = 16"),
     Case("no-white-layer", "no white layer left", ("n_cortex_layers = 17", "n_layers = 17", "at most 16"), "[mesh]\nn_cortex_layers = 17"),
     Case("too-many-cells", "more cells than fit", ("cells are not allowed", "n_around"), "[mesh]\nn_around = 4096\nrefine = 4"),
     Case("too-much-growth", "absurd growth", ("growth.rate × growth.duration = 500", "at most 10"), "[growth]\nrate = 1"),
@@ -150,7 +150,7 @@ COMMAND_LINE = [
     Case("preset", "a preset that does not exist", ("available are reference-slice, wang2019", "Did you mean wang2019?"), args=(*CHECK, "--preset", "wang2018")),
     Case("preset-in-file", "a preset in a file that does not exist", ("does not exist",), 'preset = "../../secret"'),
     Case("option-value", "a bad value of an option", ("growth.ratio = -3 ",), args=(*CHECK, "--growth-ratio", "-3")),
-    Case("slivers", "layers far too thin for their columns", ("mesh.n_around = 216", "quality", "raise mesh.n_around"), args=(*CHECK, "--thickness", "0.05")),
+    Case("slivers", "layers far too thin for their columns", ("quality 0.011", "too wide", "Try mesh.n_around = "), args=(*CHECK, "--thickness", "0.05")),
     Case("axial-patches", "an element that has no free stretch along z", ("growth.out_of_plane", "mean_dilatation", "Try"), '[growth]\nout_of_plane = "generalised"\n[mesh]\nelement = "mean_dilatation"'),
     Case("cortex-refined-too-often", "more refinements of the cortex than white layers", ("mesh.refine_cortex = 4", "3 white"), "[mesh]\nn_layers = 9\nrefine_cortex = 4"),
     Case("symmetric-columns", "columns that cannot be symmetric", ("mesh.split", "4 must divide", "n_around = 60 or 64"), "[mesh]\nn_around = 62\nsplit = \"symmetric\""),

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
 
 import bad_input
 import pytest
+from bad_input_advice import ADVICE, Way
+
+from gyrify.cli import main
 
 
 @pytest.mark.parametrize("case", bad_input.CASES, ids=lambda case: case.id)
@@ -19,6 +23,31 @@ def test_message(case: bad_input.Case, tmp_path: Path) -> None:
     for jargon in ("Traceback", "pydantic", "ValidationError", "type=", "validator"):
         assert jargon not in message
     assert all(character.isprintable() or character == "\n" for character in message)
+
+
+def test_every_refusal_has_advice_that_is_tried() -> None:
+    assert set(ADVICE) == {case.id for case in bad_input.CASES}
+    assert all(ADVICE.values())
+
+
+@pytest.mark.parametrize(
+    ("case", "way"),
+    [pytest.param(case, way, id=case.id) for case in bad_input.CASES for way in ADVICE.get(case.id, [])],
+)
+def test_the_advice_works(
+    case: bad_input.Case, way: Way, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    _, message = bad_input.provoke(case, tmp_path)
+    assert way.says in message
+    if way.first is not None:
+        way.first(tmp_path)
+    arguments = list(way.args)
+    if way.toml is not None:
+        (tmp_path / "mended.toml").write_text(way.toml, encoding="utf-8")
+        arguments.append("mended.toml")
+    with contextlib.chdir(tmp_path):
+        for command in filter(None, (arguments, list(way.then))):
+            assert main(command) == 0, capsys.readouterr().err
 
 
 def test_case_names_are_unique() -> None:

@@ -9,12 +9,14 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from gyrify.arguments import real_number
 from gyrify.config import Config
 from gyrify.config.run_sections import Metrics
 from gyrify.metrics import Measures
 from gyrify.metrics.measure import measure_valid
 from gyrify.store.files import fresh
 from gyrify.store.history import History
+from gyrify.store.indices import state_number
 from gyrify.validity.lengths import check_lengths
 
 
@@ -65,7 +67,7 @@ def measure_state(
 def measured_with(config: Config, closing_radius: float | None, gyrus_prominence: float | None) -> Config:
     """Return the configuration with other lengths of measuring [mm], where they are given."""
     lengths = {"metrics.closing_radius": closing_radius, "metrics.gyrus_prominence": gyrus_prominence}
-    given = {key: float(length) for key, length in lengths.items() if length is not None}
+    given = {key: real_number(key, length) for key, length in lengths.items() if length is not None}
     return config.with_overrides(given) if given else config
 
 
@@ -85,7 +87,7 @@ def _measured(history: History, index: int, chosen: Metrics, *, earlier: bool = 
 def volume_extremes(history: History, index: int = -1) -> tuple[float, float]:
     """Smallest J = det F and smallest J_e = J / J_g over the cells of a state [-]."""
     problem = history.slice
-    number = index % len(history)
+    number = state_number(index, len(history))
     J = problem.volume_ratio(history.state_vector(number))
     J_g = problem.volume_growth(float(history.growth_times[number]))
     return float(J.min()), float((J / J_g).min())

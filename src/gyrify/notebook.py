@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from pyvista import UnstructuredGrid
 
 _DPI = 110
+# The displacement of points that have moved by it already.
+DONE = "displacement_done"
 
 
 def html(history: History) -> str:
@@ -78,8 +80,8 @@ def to_dataframe(history: History) -> DataFrame:
     return _library("pandas").DataFrame(metrics_rows(history)).set_index("increment")
 
 
-def to_pyvista(history: History, index: int = -1) -> UnstructuredGrid:
-    """Return a state as a PyVista grid, deformed, with all its fields.
+def to_pyvista(history: History, index: int = -1, *, deformed: bool = True) -> UnstructuredGrid:
+    """Return a state as a PyVista grid with all its fields.
 
     Parameters
     ----------
@@ -87,11 +89,15 @@ def to_pyvista(history: History, index: int = -1) -> UnstructuredGrid:
         The run.
     index : int
         State; negative indices count from the end.
+    deformed : bool
+        Whether the points are the current ones, ready to be drawn. If not, they are those of the reference
+        state, as in the files for ParaView, and ``displacement`` warps them to the current ones.
 
     Returns
     -------
     pyvista.UnstructuredGrid
-        Points [mm] with z = 0 and triangles; vectors and tensors have three dimensions.
+        Points [mm] with z = 0 and triangles; vectors and tensors have three dimensions. Where the points are
+        deformed already, the displacement is called ``displacement_done``, so that none warps them twice.
 
     Raises
     ------
@@ -101,13 +107,14 @@ def to_pyvista(history: History, index: int = -1) -> UnstructuredGrid:
         If there is no such state.
     """
     pyvista = _library("pyvista")
-    x = history.points(index)
+    x = history.points(index) if deformed else history.mesh.points
     kinds = {3: pyvista.CellType.TRIANGLE, 6: pyvista.CellType.QUADRATIC_TRIANGLE}
     cells = history.mesh.cells
     grid = pyvista.UnstructuredGrid({kinds[cells.shape[1]]: cells}, _in_space(x))
     for name, values in fields(history, index).items():
         data = grid.point_data if name in POINT_FIELDS else grid.cell_data
-        data[name] = _in_space(values) if values.ndim == 2 else values.reshape(len(values), -1).squeeze()
+        label = DONE if deformed and name == "displacement" else name
+        data[label] = _in_space(values) if values.ndim == 2 else values.reshape(len(values), -1).squeeze()
     return grid
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from gyrify.arguments import Pathlike, as_path
 from gyrify.errors import HistoryError
 from gyrify.report.figures import folded_figure, save_figure
 from gyrify.report.mode import mode_figure, wave_words
@@ -20,7 +21,7 @@ from gyrify.summary import summarise, write_metrics, write_summary
 from gyrify.validity.converged import mark
 
 
-def write_outputs(history: History, folder: str | Path) -> dict[str, Any]:
+def write_outputs(history: History, folder: Pathlike) -> dict[str, Any]:
     """Write every derived file, each by atomic rename: summary, metrics, pictures, time series.
 
     Parameters
@@ -40,7 +41,7 @@ def write_outputs(history: History, folder: str | Path) -> dict[str, Any]:
     HistoryError
         If the folder cannot be written; nothing is left half written.
     """
-    folder = Path(folder)
+    folder = as_path("folder", folder)
     summary = write_state(history, folder)
     with _whole_files(folder):
         write_metrics(history, folder / "metrics.csv")
@@ -51,7 +52,7 @@ def write_outputs(history: History, folder: str | Path) -> dict[str, Any]:
     return summary
 
 
-def write_state(history: History, folder: str | Path) -> dict[str, Any]:
+def write_state(history: History, folder: Pathlike) -> dict[str, Any]:
     """Write ``summary.json`` alone, in a moment: what a folder should tell when there is no time for more.
 
     Parameters
@@ -71,7 +72,7 @@ def write_state(history: History, folder: str | Path) -> dict[str, Any]:
     HistoryError
         If the folder cannot be written.
     """
-    folder = Path(folder)
+    folder = as_path("folder", folder)
     summary = summarise(history)
     with _whole_files(folder):
         write_summary(summary, folder / "summary.json")

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from pathlib import Path
 
+from gyrify.arguments import Pathlike, as_path
 from gyrify.config import Config, ConfigLike, as_config
 from gyrify.errors import ConfigError
 from gyrify.model import Slice
@@ -23,7 +23,7 @@ __all__ = ["Observer", "Progress", "new_run", "resume", "simulate", "stored_run"
 
 
 @contextmanager
-def new_run(config: ConfigLike, out: str | Path | None = None, *, overwrite: bool = False) -> Iterator[Run]:
+def new_run(config: ConfigLike, out: Pathlike | None = None, *, overwrite: bool = False) -> Iterator[Run]:
     """Begin a run, and hold its folder until the end of the ``with`` block.
 
     Parameters
@@ -50,7 +50,7 @@ def new_run(config: ConfigLike, out: str | Path | None = None, *, overwrite: boo
     if out is None:
         yield Run(problem, Journal.create(None, meta))
         return
-    folder = Path(out)
+    folder = as_path("out", out)
     with new_folder(folder, meta["config"], overwrite) as note:
         journal = Journal.create(folder / JOURNAL, meta)
         try:
@@ -60,7 +60,7 @@ def new_run(config: ConfigLike, out: str | Path | None = None, *, overwrite: boo
 
 
 @contextmanager
-def stored_run(run: str | Path, overrides: Mapping[str, object] | None = None) -> Iterator[Run]:
+def stored_run(run: Pathlike, overrides: Mapping[str, object] | None = None) -> Iterator[Run]:
     """Take up a stored run, and hold its folder until the end of the ``with`` block.
 
     Parameters
@@ -81,7 +81,7 @@ def stored_run(run: str | Path, overrides: Mapping[str, object] | None = None) -
     ConfigError
         If an override is not allowed.
     """
-    folder = Path(run)
+    folder = as_path("run", run)
     with stored_folder(folder) as note:
         journal = Journal.open(folder / JOURNAL)
         config = Config.from_toml(journal.meta("config"))
@@ -100,7 +100,7 @@ def stored_run(run: str | Path, overrides: Mapping[str, object] | None = None) -
 
 def simulate(
     config: ConfigLike,
-    out: str | Path | None = None,
+    out: Pathlike | None = None,
     *,
     observers: Iterable[Observer] = (),
     overwrite: bool = False,
@@ -138,7 +138,7 @@ def simulate(
         If the folder cannot be used, or holds a run of another configuration.
     """
     config = as_config(config)
-    known = None if out is None or overwrite else known_run(config, Path(out))
+    known = None if out is None or overwrite else known_run(config, as_path("out", out))
     if known is not None and known.status == "completed" and not known.changes:
         return History.load(known.folder)
     if known is None:
@@ -151,7 +151,7 @@ def simulate(
 
 
 def resume(
-    run: str | Path,
+    run: Pathlike,
     *,
     overrides: Mapping[str, object] | None = None,
     observers: Iterable[Observer] = (),

@@ -17,6 +17,7 @@ SOURCE = Path(gyrify.__file__).parent
 # Each layer may import from the layers above it in this list, and from its own package.
 LAYERS = [
     {"errors", "versions", "markup"},
+    {"arguments"},
     {"config", "physics", "mesh", "theory", "limits"},
     {"energy", "metrics"},
     {"solve", "meshing", "phenotype"},
@@ -25,13 +26,13 @@ LAYERS = [
 ]
 # What kernels and readers may know, more strictly than by their layer.
 MAY_IMPORT = {
-    "config": {"errors"},
+    "config": {"arguments", "errors"},
     "physics": {"errors"},
     "mesh": {"errors"},
     "theory": {"errors"},
     "energy": {"physics", "errors"},
     "solve": {"energy", "physics", "mesh", "errors"},
-    "metrics": {"mesh", "errors", "markup"},
+    "metrics": {"arguments", "mesh", "errors", "markup"},
     "phenotype": {"metrics", "config", "errors"},
 }
 # Imports inside functions: (importer, imported), and why. Anything else is written at the top of its file.

@@ -114,22 +114,9 @@ def test_csv_of_all_states(folded: History, tmp_path: Path):
     assert np.array_equal(np.unique(table[:, 1]), folded.growth_times)
 
 
-@needs_meshio
-def test_stl_is_the_deformed_slice(folded: History, tmp_path: Path):
-    import meshio
-
-    (path,) = export(folded, "stl", tmp_path / "last.stl")
-    mesh = meshio.read(path)
-    corners = mesh.points[mesh.cells_dict["triangle"]]
-    expected = folded.points()[folded.mesh.cells]
-    assert corners.shape[0] == folded.mesh.n_cells
-    assert np.allclose(corners[:, :, :2], expected, atol=1e-4)
-    assert not corners[:, :, 2].any()
-
-
 def test_a_missing_library_is_named_with_the_command_that_installs_it(folded, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "meshio", None)
-    for format in ("vtu", "stl"):
+    for format in ("vtu",):
         with pytest.raises(ConfigError, match=r"pip install meshio .*\[export\]"):
             export(folded, format, tmp_path / "x")
 

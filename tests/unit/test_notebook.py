@@ -78,7 +78,7 @@ def test_pyvista_grid_has_the_deformed_points_and_all_fields(history: History) -
     grid = history.to_pyvista(2)
     np.testing.assert_array_equal(np.asarray(grid.points)[:, :2], history.points(2))
     assert grid.n_cells == history.mesh.n_cells
-    assert grid.point_data["displacement"].shape == (history.mesh.n_points, 3)
+    assert grid.point_data["displacement_done"].shape == (history.mesh.n_points, 3)
     assert grid.cell_data["cauchy_stress"].shape == (history.mesh.n_cells, 9)
     assert set(grid.cell_data["region"]) == {0.0, 1.0}
 

@@ -48,10 +48,11 @@ def export(
     run_folder: RunFolder,
     /,
     *,
-    format: Literal["vtu", "xdmf", "csv", "stl", "metrics"] = "vtu",
+    format: Literal["vtu", "xdmf", "csv", "stl", "contour", "metrics"] = "vtu",
     out: Path | None = None,
     state: int = -1,
     every: bool = False,
+    thickness: float = 2.0,
     closing_radius: Text = None,
     gyrus_prominence: Text = None,
     json: bool = False,
@@ -61,14 +62,18 @@ def export(
 
     Parameters
     ----------
-    format : {"vtu", "xdmf", "csv", "stl", "metrics"}
-        Format of the files; metrics is a table of the metrics as CSV, a row per state.
+    format : {"vtu", "xdmf", "csv", "stl", "contour", "metrics"}
+        Format of the files; contour is a CSV table of the outer contour, metrics one of the metrics, a row
+        per state.
     out : Path, optional
-        File to write; by default export and the format's suffix (export-metrics.csv), in the run folder.
+        File to write; by default export and the format's suffix (contour.csv, export-metrics.csv), in the
+        run folder.
     state : int
         State to write; negative numbers count from the end.
     every : bool
         Write every state that ``output.every`` asks for, as a time series.
+    thickness : float
+        Thickness of the solid that STL makes of the slice [mm].
     closing_radius : str, optional
         Radius of the closing to measure with [mm], with --format metrics; by default that of the run.
     gyrus_prominence : str, optional
@@ -79,6 +84,7 @@ def export(
         Show no progress.
     """
     from gyrify.store import History
+    from gyrify.store.export import NAMES
     from gyrify.store.export import export as write
 
     lengths = _lengths(format, closing_radius=closing_radius, gyrus_prominence=gyrus_prominence)
@@ -87,8 +93,8 @@ def export(
         target = out if out is not None else run_folder / "export-metrics.csv"
         files = [str(_measured_again(history, target, index, lengths))]
     else:
-        target = out if out is not None else run_folder / f"export.{format}"
-        files = [str(path) for path in write(history, format, target, index)]
+        target = out if out is not None else run_folder / NAMES[format]
+        files = [str(path) for path in write(history, format, target, index, thickness=thickness)]
     if json:
         print_json({"files": files})
     else:

@@ -13,7 +13,7 @@ from gyrify.cli.interrupts import ends_are_interrupts
 from gyrify.cli.options import cores
 from gyrify.cli.overrides import STANDARD_INPUT
 from gyrify.cli.streams import complain, print_json, say, warn
-from gyrify.errors import ConfigError
+from gyrify.errors import ConfigError, GyrifyError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -80,10 +80,10 @@ def study(
         return INTERRUPTED
     warn(_warnings(result))
     if json:
-        print_json({**result.as_dict(), "pictures": [str(path) for path in pictures]})
+        print_json({**result.as_dict(), "pictures": [str(path) for path in pictures or ()]})
     else:
-        _report(result, folder, pictures)
-    return _EXIT_CODES[result.status]
+        _report(result, folder, pictures or ())
+    return FAILED if pictures is None else _EXIT_CODES[result.status]
 
 
 def _described(file: Path, out: Path | None) -> Study:
@@ -110,10 +110,15 @@ def _warnings(result: StudyResult) -> list[str]:
     return [told, *(f"{len(found[said])} of {total} runs: {said}" for said in often)]
 
 
-def _draw(folder: Path) -> Sequence[Path]:
+def _draw(folder: Path) -> Sequence[Path] | None:
+    """Draw the pictures; None where that failed, which must not take the results with it."""
     from gyrify.report.study_pictures import write_study_pictures
 
-    return write_study_pictures(folder)
+    try:
+        return write_study_pictures(folder)
+    except GyrifyError as fault:
+        complain(f"The results are stored, but not their pictures. {fault}")
+        return None
 
 
 def _report(result: StudyResult, folder: Path, pictures: Sequence[Path]) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic.config import JsonDict
 
+from gyrify.arguments import native
 from gyrify.config.faults import config_error, nearest
 from gyrify.config.numbers import is_fraction, parse_number
 from gyrify.config.words import show
@@ -72,10 +73,12 @@ class Section(_Model):
     @model_validator(mode="before")
     @classmethod
     def _normalise(cls, data: Any) -> Any:
-        """Turn fractions and -0.0 into plain numbers and drop None where it is the default."""
+        """Turn fractions, NumPy scalars and -0.0 into plain numbers and drop None where it is the default."""
         if not isinstance(data, dict):
             return data
-        return {key: _normalised(value) for key, value in data.items() if not cls._is_unset(key, value)}
+        return {
+            key: _normalised(native(value)) for key, value in data.items() if not cls._is_unset(key, value)
+        }
 
     def __setattr__(self, name: str, value: object) -> None:
         """Refuse, and say how a configuration with another value is made."""

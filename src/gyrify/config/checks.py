@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
@@ -9,6 +10,7 @@ if TYPE_CHECKING:
 
 MAX_WALL_SHARE: Final = 0.95
 MAX_CELLS: Final = 4_000_000
+FEWEST_COLUMNS: Final = 24
 MAX_GROWTH: Final = 10.0
 
 
@@ -43,19 +45,28 @@ def _white_matter(config: Config) -> str:
         f"geometry.cortical_thickness = {geometry.cortical_thickness!r} is not allowed: too little "
         f"white matter is left, it must be below 0.95 of the narrowest wall, "
         f"that is {MAX_WALL_SHARE * wall:.6g} [mm]. "
-        f"Try a thinner cortex or a larger {remedy}."
+        f"Try geometry.cortical_thickness = {_below(0.9 * wall)} or less, or a larger {remedy}."
     )
 
 
 def _cells(config: Config) -> str:
     mesh = config.mesh
-    cells = 2 * mesh.n_around * mesh.n_layers * 4 ** (mesh.refine + mesh.refine_cortex)
+    times = mesh.refine + mesh.refine_cortex
+    column = 2 * mesh.n_layers * 4**times
+    cells = column * mesh.n_around
     if cells <= MAX_CELLS:
         return ""
-    return (
-        f"mesh: up to {cells} cells are not allowed: at most {MAX_CELLS}. "
-        "Try a smaller mesh.n_around, mesh.n_layers, mesh.refine or mesh.refine_cortex."
+    fewer = MAX_CELLS // column // 2 * 2
+    fits = max(
+        (n for n in range(times) if column * mesh.n_around // 4 ** (times - n) <= MAX_CELLS), default=0
     )
+    refine = min(mesh.refine, fits)
+    advice = (
+        f"Try mesh.n_around = {fewer} or less."
+        if fewer >= FEWEST_COLUMNS
+        else f"Try mesh.refine = {refine} and mesh.refine_cortex = {fits - refine}."
+    )
+    return f"mesh: up to {cells} cells are not allowed: at most {MAX_CELLS}. {advice}"
 
 
 def _growth(config: Config) -> str:
@@ -64,8 +75,19 @@ def _growth(config: Config) -> str:
         return ""
     return (
         f"growth.rate × growth.duration = {growth.rate * growth.duration:.6g} is not allowed: at most "
-        f"{MAX_GROWTH:g} (the paper has 1, a doubling of length). Try a smaller growth.rate or duration."
+        f"{MAX_GROWTH:g} (the paper has 1, a doubling of length). Try growth.rate = "
+        f"{_below(MAX_GROWTH, growth.duration)} or growth.duration = {_below(MAX_GROWTH, growth.rate)}."
     )
+
+
+def _below(limit: float, factor: float = 1.0) -> str:
+    """The largest number of three digits whose product with a factor stays within a limit."""
+    value = limit / factor
+    step = 10.0 ** (math.floor(math.log10(value)) - 2)
+    n = math.floor(value / step * (1.0 + 1e-12))
+    while n * step * factor > limit * (1.0 + 1e-15):
+        n -= 1
+    return f"{n * step:.3g}"
 
 
 def _increments(config: Config) -> str:
@@ -82,12 +104,14 @@ def _branch(config: Config) -> str:
     stability, dissipation = config.stability, config.dissipation
     if not stability.follow_branch:
         return ""
+    is_held = dissipation.kind != "none" and dissipation.number != 0.0
     if not stability.detect:
+        free = ' and dissipation.kind = "none"' if is_held else ""
         return (
             "stability.follow_branch = true is not allowed with stability.detect = false: a branch must be "
-            "found before it is followed. Try stability.detect = true."
+            f"found before it is followed. Try stability.detect = true{free}."
         )
-    if dissipation.kind == "none" or dissipation.number == 0.0:
+    if not is_held:
         return ""
     return (
         f'stability.follow_branch = true is not allowed with dissipation.kind = "{dissipation.kind}": with '

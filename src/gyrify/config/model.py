@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from collections.abc import Mapping
-from pathlib import Path
 from shlex import quote
 from typing import Any, Final
 
 from pydantic import model_validator
 
+from gyrify.arguments import Pathlike, as_path, plain_tables
 from gyrify.config import checks, toml_text
 from gyrify.config.base import Section, setting
 from gyrify.config.faults import raise_faults, sections, unknown_key
@@ -85,7 +86,7 @@ class Config(Section):
         return cls(**{str(key): value for key, value in data.items()})
 
     @classmethod
-    def from_toml(cls, source: str | Path) -> Config:
+    def from_toml(cls, source: str | os.PathLike[str]) -> Config:
         """Read a configuration from TOML.
 
         Parameters
@@ -98,12 +99,12 @@ class Config(Section):
         Config
             Checked and complete.
         """
-        if isinstance(source, Path):
+        if isinstance(source, os.PathLike):
             return cls.load(source)
         return cls.from_dict(toml_text.parse(source))
 
     @classmethod
-    def load(cls, path: str | Path) -> Config:
+    def load(cls, path: Pathlike) -> Config:
         """Read a configuration from a TOML file.
 
         Parameters
@@ -200,10 +201,11 @@ class Config(Section):
         return html_table(self)
 
 
-def read_tables(path: str | Path) -> dict[str, Any]:
+def read_tables(path: Pathlike) -> dict[str, Any]:
     """Read the tables of a TOML file without checking what they mean."""
+    path = as_path("path", path)
     name = f"The configuration file {shorten(str(path), toml_text.MAX_PATH)}"
-    tables = toml_text.parse(toml_text.read_text(Path(path)), name)
+    tables = toml_text.parse(toml_text.read_text(path), name)
     if "design" in tables:
         raise ConfigError(
             f"The file {shorten(str(path), toml_text.MAX_PATH)} describes a study of many runs, not one run: "
@@ -240,7 +242,7 @@ def nested(overrides: Mapping[str, object]) -> dict[str, Any]:
     """
     tables: dict[str, Any] = {}
     faults = []
-    for dotted, value in overrides.items():
+    for dotted, value in plain_tables(overrides).items():
         name, _, key = dotted.partition(".")
         section = sections(Config).get(name)
         if section is None and (name not in (*Config.top_level(), "preset") or key):

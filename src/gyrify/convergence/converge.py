@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from gyrify.arguments import Pathlike, as_path, as_words, real_number, whole_number
 from gyrify.config import Config, ConfigLike, as_config
 from gyrify.convergence.plan import SUBJECTS, Subject, plan
 from gyrify.convergence.result import Convergence, Family, Level
@@ -18,10 +19,10 @@ Teller = Callable[[Level, int, int], None]
 
 def converge(
     config: ConfigLike,
-    out: str | Path | None = None,
+    out: Pathlike | None = None,
     *,
     levels: int = 3,
-    of: Sequence[Subject] | None = None,
+    of: Subject | Sequence[Subject] | None = None,
     workers: int = 1,
     tolerance: float = 0.02,
     tell: Teller | None = None,
@@ -39,7 +40,7 @@ def converge(
         Folder for runs and results; by default ``convergence/`` and 12 digits of the configuration's hash.
     levels : int
         Runs per family, each twice as fine as the one before; three are needed for an order.
-    of : sequence of {"mesh", "increments", "contact"}, optional
+    of : {"mesh", "increments", "contact"} or a sequence of them, optional
         What is refined; by default all that has a meaning for the configuration.
     workers : int
         Processes; 1 computes in this one. More need the usual ``if __name__ == "__main__"`` in a script.
@@ -63,13 +64,14 @@ def converge(
         At Ctrl-C; the same call continues.
     """
     begun, config = time.perf_counter(), as_config(config)
+    tolerance, workers = real_number("tolerance", tolerance), whole_number("workers", workers)
     if not 0.0 < tolerance < 1.0:
         raise ConfigError(f"tolerance = {tolerance:g} is out of range (above 0, below 1).", "Try 0.02.")
     if not 1 <= workers <= 256:
         raise ConfigError(f"workers = {workers} is out of range (1 to 256).", "Try the number of cores.")
-    subjects = of if of is not None else [s for s in SUBJECTS if s != "contact" or config.contact.enabled]
-    folder = default_folder(config) if out is None else Path(out)
-    plans = plan(config, subjects, levels)
+    usual = tuple(s for s in SUBJECTS if s != "contact" or config.contact.enabled)
+    folder = default_folder(config) if out is None else as_path("out", out)
+    plans = plan(config, usual if of is None else as_words("of", of), whole_number("levels", levels))
     with storage_faults(folder):
         (folder / "runs").mkdir(parents=True, exist_ok=True)
     families = _complete(plans, folder / "runs", workers, tolerance, tell)

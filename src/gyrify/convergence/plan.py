@@ -16,7 +16,7 @@ MAX_LEVELS: Final = 6
 _MAX_REFINE: Final = 4
 
 
-def plan(config: Config, subjects: Sequence[Subject], levels: int) -> dict[Subject, tuple[Config, ...]]:
+def plan(config: Config, subjects: Sequence[str], levels: int) -> dict[Subject, tuple[Config, ...]]:
     """Configurations of every family, coarse to fine; the first of each is the given one.
 
     Parameters
@@ -42,11 +42,12 @@ def plan(config: Config, subjects: Sequence[Subject], levels: int) -> dict[Subje
         raise ConfigError(f"levels = {levels} is out of range (2 to {MAX_LEVELS}).", "Try 3.")
     if not subjects:
         raise ConfigError("No subject to refine is given.", f"Choose among {', '.join(SUBJECTS)}.")
-    for subject in subjects:
+    known = [_known(subject) for subject in subjects]
+    for subject in known:
         _require_meaning(config, subject, levels)
     return {
         subject: tuple(_refined(config, subject, 2**level) for level in range(levels))
-        for subject in dict.fromkeys(subjects)
+        for subject in dict.fromkeys(known)
     }
 
 
@@ -81,9 +82,14 @@ def _contour_length(config: Config) -> float:
     return float(2.0 * np.pi * np.hypot(a * np.sin(angle), b * np.cos(angle)).mean())
 
 
+def _known(subject: str) -> Subject:
+    for known in SUBJECTS:
+        if subject == known:
+            return known
+    raise ConfigError(f"{subject[:60]!r} cannot be refined.", f"Choose among {', '.join(SUBJECTS)}.")
+
+
 def _require_meaning(config: Config, subject: Subject, levels: int) -> None:
-    if subject not in SUBJECTS:
-        raise ConfigError(f"{subject[:60]!r} cannot be refined.", f"Choose among {', '.join(SUBJECTS)}.")
     if subject == "contact" and not config.contact.enabled:
         raise ConfigError("There is no contact to refine: contact.enabled is false.", "Leave contact out.")
     if subject == "mesh" and config.mesh.refine + levels - 1 > _MAX_REFINE:

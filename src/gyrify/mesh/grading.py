@@ -36,7 +36,8 @@ def layer_fractions(n_layers: int, top: float, grading: Grading) -> FloatArray:
     powers = np.arange(n_layers)
 
     def excess(ratio: float) -> float:
-        return float(top * np.power(ratio, powers).sum() - 1.0)
+        with np.errstate(over="ignore"):  # the widest ratio that is tried may be far too wide
+            return float(top * np.power(ratio, powers).sum() - 1.0)
 
     ratio = (
         LOWEST_RATIO if excess(LOWEST_RATIO) >= 0.0 else brentq(excess, LOWEST_RATIO, 2.0 / top, xtol=1e-15)

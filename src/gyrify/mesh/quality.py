@@ -12,6 +12,10 @@ from gyrify.mesh.mesh import FloatArray, Mesh
 LOWEST_QUALITY: Final = 0.02
 
 
+class SliverError(MeshError):
+    """A mesh with cells that are far too thin; another division of the same shape has none."""
+
+
 def triangle_quality(corners: FloatArray) -> FloatArray:
     """Mean-ratio quality 4 sqrt(3) area / sum of squared edges: 1 equilateral, 0 flat, negative inverted.
 
@@ -43,24 +47,18 @@ def require_quality(mesh: Mesh, column: float, layers: FloatArray) -> None:
 
     Raises
     ------
-    MeshError
+    SliverError
         If the worst quality is below `LOWEST_QUALITY`.
     """
     worst = float(triangle_quality(mesh.cell_points[:, :3]).min())
     if worst >= LOWEST_QUALITY:
         return
-    if column / layers.min() >= layers.max() / column:
-        reason = (
-            f"Columns {column:.3g} mm wide are too wide for layers of {layers.min():.3g} mm: raise "
-            "mesh.n_around or geometry.cortical_thickness, or lower mesh.n_layers or mesh.n_cortex_layers."
-        )
-    else:
-        reason = (
-            f"Columns {column:.3g} mm wide are too narrow for layers of {layers.max():.3g} mm: lower "
-            "mesh.n_around, or raise mesh.n_layers."
-        )
-    raise MeshError(
-        f"mesh.n_around = {mesh.contour.size} gives cells of quality {worst:.3g} (1 is equilateral; at least "
-        f"{LOWEST_QUALITY:g} is needed).",
-        reason,
+    is_wide = column / layers.min() >= layers.max() / column
+    fit, layer = ("wide", layers.min()) if is_wide else ("narrow", layers.max())
+    raise SliverError(
+        f"The mesh has cells of quality {worst:.2g} (1 is equilateral, {LOWEST_QUALITY:g} is needed). "
+        f"Columns {column:.3g} mm wide are too {fit} for layers of {layer:.3g} mm.",
+        "Raise mesh.n_around, or lower mesh.n_cortex_layers."
+        if is_wide
+        else "Lower mesh.n_around, or raise mesh.n_layers.",
     )

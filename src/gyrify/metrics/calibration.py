@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Final
 
+from gyrify.arguments import real_number
 from gyrify.errors import ConfigError
 
 # Lengths [mm] in whose cube volumes may be counted: a power law with a prefactor of 1 depends on it.
@@ -58,8 +60,9 @@ def growth_ratio_from_scaling(
     ConfigError
         If an argument is out of range, or the law would have the white matter shrink.
     """
-    for name, value in (("slice_thickness", slice_thickness), ("exponent", exponent), ("growth", growth)):
-        _require(name, value, "mm" if name == "slice_thickness" else "-", value > 0)
+    slice_thickness = _require("slice_thickness", slice_thickness, "mm", _is_positive)
+    exponent = _require("exponent", exponent, "-", _is_positive)
+    growth = _require("growth", growth, "-", _is_positive)
     grey_area, white_area = _tissue_areas(cortical_thickness, area, aspect_ratio, hole_fraction)
     depth = slice_thickness / _length_unit(unit) ** 3
     grey, white = (1 + growth) ** 3 * grey_area * depth, white_area * depth
@@ -85,14 +88,18 @@ def _tissue_areas(
     cortical_thickness: float, area: float, aspect_ratio: float, hole_fraction: float
 ) -> tuple[float, float]:
     """Return the initial areas [mm²] of grey and white matter of the hollow elliptic slice."""
-    _require("area", area, "mm²", area > 0)
-    _require("aspect_ratio", aspect_ratio, "-", aspect_ratio >= 1, ">= 1")
-    _require("hole_fraction", hole_fraction, "-", 0 < hole_fraction < 1, "between 0 and 1")
+    area = _require("area", area, "mm²", _is_positive)
+    aspect_ratio = _require("aspect_ratio", aspect_ratio, "-", lambda value: value >= 1, ">= 1")
+    hole_fraction = _require(
+        "hole_fraction", hole_fraction, "-", lambda value: 0 < value < 1, "between 0 and 1"
+    )
     b = math.sqrt(area / (math.pi * aspect_ratio))
     a = aspect_ratio * b
     widest = b * (1 - hole_fraction)
-    in_range = 0 < cortical_thickness < widest
-    _require("cortical_thickness", cortical_thickness, "mm", in_range, f"between 0 and {widest:.3g}")
+    allowed = f"between 0 and {widest:.3g}"
+    cortical_thickness = _require(
+        "cortical_thickness", cortical_thickness, "mm", lambda value: 0 < value < widest, allowed
+    )
     interface = math.pi * (a - cortical_thickness) * (b - cortical_thickness)
     return area - interface, interface - hole_fraction**2 * area
 
@@ -115,8 +122,8 @@ def growth_ratio_from_volumes(grey_increase: float = 4.6, white_increase: float 
     ConfigError
         If a volume does not increase.
     """
-    _require("grey_increase", grey_increase, "-", grey_increase > 1, "> 1")
-    _require("white_increase", white_increase, "-", white_increase > 1, "> 1")
+    grey_increase = _require("grey_increase", grey_increase, "-", lambda value: value > 1, "> 1")
+    white_increase = _require("white_increase", white_increase, "-", lambda value: value > 1, "> 1")
     return (math.cbrt(grey_increase) - 1) / (math.cbrt(white_increase) - 1)
 
 
@@ -138,15 +145,23 @@ def length_increase(initial_volume: float = 60.0, final_volume: float = 1200.0) 
     ConfigError
         If a volume is not positive.
     """
-    _require("initial_volume", initial_volume, "ml", initial_volume > 0)
-    _require("final_volume", final_volume, "ml", final_volume > 0)
+    initial_volume = _require("initial_volume", initial_volume, "ml", _is_positive)
+    final_volume = _require("final_volume", final_volume, "ml", _is_positive)
     return math.cbrt(final_volume / initial_volume) - 1
 
 
-def _require(name: str, value: float, unit: str, in_range: bool, allowed: str = "> 0") -> None:
-    """Raise `ConfigError` with name, value and range unless the value is finite and in range."""
-    if not (math.isfinite(value) and in_range):
+def _is_positive(value: float) -> bool:
+    return value > 0
+
+
+def _require(
+    name: str, given: object, unit: str, is_in_range: Callable[[float], bool], allowed: str = "> 0"
+) -> float:
+    """Return a number, or raise `ConfigError` with name, value and range unless it is finite and in range."""
+    value = real_number(name, given)
+    if not (math.isfinite(value) and is_in_range(value)):
         raise ConfigError(
             f"{name} = {value:g} [{unit}] is out of range: it must be {allowed}.",
             f"Give {name} as a number {allowed}.",
         )
+    return value

@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
+from gyrify.arguments import real_number
 from gyrify.errors import ConfigError, MeshError
 
 FloatArray = NDArray[np.float64]
@@ -76,12 +77,14 @@ def as_points(points: ArrayLike) -> FloatArray:
     return found
 
 
-def require_positive(name: str, value: float, unit: str = "mm") -> None:
-    """Raise `ConfigError` unless ``value`` is a positive finite number."""
-    if not (math.isfinite(value) and value > 0):
+def require_positive(name: str, value: object, unit: str = "mm") -> float:
+    """Return a positive finite number as a float, or raise `ConfigError`."""
+    number = real_number(name, value)
+    if not (math.isfinite(number) and number > 0):
         raise ConfigError(
-            f"{name} = {value} {unit} is out of range: it must be > 0.", f"Give {name} in {unit}."
+            f"{name} = {number:g} {unit} is out of range: it must be > 0.", f"Give {name} in {unit}."
         )
+    return number
 
 
 def self_intersecting(contour: ArrayLike) -> bool:

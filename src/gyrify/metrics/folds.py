@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
-from gyrify.errors import ConfigError
+from gyrify.arguments import whole_number
 from gyrify.metrics.contour import (
     FloatArray,
     following,
@@ -134,7 +134,7 @@ def find_folds(contour: ArrayLike, gyrus_prominence: float = 0.3, samples: int =
     measure : counts them as gyri only if a sulcus lies below the convex hull by the prominence.
     periodic_extrema : the detection alone, for any periodic profile such as the surface of a strip.
     """
-    require_detectable(gyrus_prominence, samples)
+    gyrus_prominence, samples = require_detectable(gyrus_prominence, samples)
     vertices = ordered_contour(contour)
     return folds_about(low_mode_shape(vertices), vertices, gyrus_prominence, samples)
 
@@ -145,11 +145,9 @@ def gyri_of(vertices: FloatArray, gyrus_prominence: float, samples: int) -> Fold
     return folds_about(shape_of_hull(hull), vertices, gyrus_prominence, samples, hull)
 
 
-def require_detectable(gyrus_prominence: float, samples: int) -> None:
-    """Raise `ConfigError` unless gyri can be sought with this prominence and number of samples."""
-    require_positive("gyrus_prominence", gyrus_prominence)
-    if samples < 16:
-        raise ConfigError(f"samples = {samples} is out of range: it must be >= 16.", "The default is 2000.")
+def require_detectable(gyrus_prominence: object, samples: object) -> tuple[float, int]:
+    """Return prominence and number of samples; raise `ConfigError` if gyri cannot be sought with them."""
+    return require_positive("gyrus_prominence", gyrus_prominence), whole_number("samples", samples, 16)
 
 
 def folds_about(

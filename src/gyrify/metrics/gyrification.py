@@ -76,12 +76,12 @@ def gyrification_index(
     The contour length counts the whole contour, also where it crosses itself; the exposed length is then that
     of the outer outline of everything the contour encloses.
     """
-    if definition not in get_args(Definition):
+    if not isinstance(definition, str) or definition not in get_args(Definition):
         raise ConfigError(
-            f"definition = {definition!r} is not a gyrification index.",
+            f"definition = {str(definition)[:60]!r} is not a gyrification index.",
             f"Choose one of {', '.join(get_args(Definition))}.",
         )
-    require_positive("closing_radius", closing_radius)
+    closing_radius = require_positive("closing_radius", closing_radius)
     vertices = ordered_contour(contour)
     notice_crossing(vertices)
     if definition != "hull":

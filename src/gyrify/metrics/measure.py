@@ -69,7 +69,7 @@ def measure(
     UserWarning
         If the closing radius is larger than the body or much smaller than its edges.
     """
-    require_positive("closing_radius", closing_radius)
+    closing_radius = require_positive("closing_radius", closing_radius)
     is_closed = period is None
     vertices = ordered_contour(contour, closed=is_closed)
     inner = ordered_contour(interface, "The interface", closed=is_closed)
@@ -93,11 +93,13 @@ def measure_valid(
     ``earlier`` measures as gyrify 0.1.0 did at first: bumps without sulci count as gyri, and the index by the
     closing exceeds the hull's by what chords miss of arcs.
     """
-    require_positive("closing_radius", closing_radius)
-    require_detectable(gyrus_prominence, samples)
+    closing_radius = require_positive("closing_radius", closing_radius)
+    gyrus_prominence, samples = require_detectable(gyrus_prominence, samples)
     lengths = (closing_radius, gyrus_prominence, samples)
     if period is not None:
-        return measure_strip(contour, interface, period, *lengths, earlier=earlier)
+        return measure_strip(
+            contour, interface, require_positive("period", period), *lengths, earlier=earlier
+        )
     return _measure_ring(contour, interface, *lengths, earlier)
 
 

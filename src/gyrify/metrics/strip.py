@@ -198,3 +198,27 @@ def _gap(line: FloatArray, period: float) -> float:
             apart = way > DETOUR * distance + _ROUNDING * arc[-1]
             smallest = min(smallest, float(np.min(distance[apart], initial=np.inf)))
     return smallest
+
+
+def strip_sulcal_depth(contour: FloatArray, period: float, closing_radius: float) -> FloatArray:
+    """Depth of the points of a strip's contour below the outline of the closing.
+
+    Parameters
+    ----------
+    contour : (n, 2) float array
+        One period of the contour towards +x [mm].
+    period : float
+        Period in x [mm], > 0.
+    closing_radius : float
+        Radius of the closing [mm], > 0.
+
+    Returns
+    -------
+    (n,) float array
+        Shortest distance to the outline [mm]; 0 on it.
+    """
+    lowest = int(np.argmin(contour[:, 1]))
+    line = _from_lowest(contour, period)
+    radius = min(closing_radius, _LARGEST * period)
+    body = _body(line, period, _count(line, period, radius) + 1, radius)
+    return np.roll(depth_below(line, offset_outline(body, radius), radius), lowest)

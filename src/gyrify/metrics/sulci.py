@@ -68,7 +68,7 @@ def sulcal_depth(points: ArrayLike, contour: ArrayLike, closing_radius: float = 
     MeshError
         If the contour is malformed.
     """
-    require_positive("closing_radius", closing_radius)
+    closing_radius = require_positive("closing_radius", closing_radius)
     tissue = filled(ordered_contour(contour))
     radius = fitting_radius(tissue, closing_radius)
     return depth_below(as_points(points), offset_outline(tissue, radius), radius)
@@ -101,5 +101,5 @@ def closing_outline(contour: ArrayLike, closing_radius: float = 10.0) -> FloatAr
     ConfigError
         If the radius is not positive.
     """
-    require_positive("closing_radius", closing_radius)
+    closing_radius = require_positive("closing_radius", closing_radius)
     return closing_of(ordered_contour(contour), closing_radius)

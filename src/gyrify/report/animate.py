@@ -9,6 +9,7 @@ from typing import Final, get_args
 
 import numpy as np
 
+from gyrify.arguments import Pathlike, as_path, real_number, whole_number
 from gyrify.config.run_sections import OutputField
 from gyrify.errors import ConfigError
 from gyrify.report.animate_files import durations, video_encoder, watched, write_gif, write_mp4
@@ -31,7 +32,7 @@ _LIMITS: Final = {"fps": (1.0, 50.0, "1/s"), "seconds": (0.5, 120.0, "s"), "widt
 
 def animate(
     run: Run,
-    out: str | Path,
+    out: Pathlike,
     *,
     fps: float = 15.0,
     seconds: float = 6.0,
@@ -79,7 +80,9 @@ def animate(
     --------
     >>> gyrify.animate("runs/reference-slice", "growth.gif", field="von_mises")  # doctest: +SKIP
     """
-    target = Path(out)
+    target = as_path("out", out)
+    fps, seconds = real_number("fps", fps), real_number("seconds", seconds)
+    width = whole_number("width", width)
     _check(target, field, fps=fps, seconds=seconds, width=width)
     if target.suffix.lower() == ".mp4":
         video_encoder()
@@ -126,9 +129,9 @@ def _check(target: Path, field: str, **numbers: float) -> None:
             f"out = {str(target)[-60:]!r} has no known format.",
             f"End it with one of: {', '.join(FORMATS)}.",
         )
-    if field not in FIELDS:
+    if not isinstance(field, str) or field not in FIELDS:
         raise ConfigError(
-            f"field = {field[:60]!r} cannot be animated.", f"Choose one of: {', '.join(FIELDS)}."
+            f"field = {str(field)[:60]!r} cannot be animated.", f"Choose one of: {', '.join(FIELDS)}."
         )
     for name, value in numbers.items():
         low, high, unit = _LIMITS[name]

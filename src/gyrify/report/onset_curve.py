@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import zip_longest
 from typing import Final
 
 import numpy as np
@@ -82,14 +83,17 @@ def onset_curve(config: Config, keys: tuple[str, str], spans: tuple[Span, Span])
         return OnsetCurve((), f"No onset curve: the exact annulus does not cover {what}.")
     along = keys.index(scanned)
     sections = _spaced(spans[1 - along], _SECTIONS)
-    cuts = [_section(config.replace(**{keys[1 - along]: at}), scanned, spans[along]) for at in sections]
-    found = [cut.values for cut in cuts]
-    depth = max(map(len, found))
-    rows = np.array([[*values, *[np.nan] * (depth - len(values))] for values in found])
-    lines = [_smooth(sections, rows[:, k]) for k in range(depth)]
-    lines = [line[:, ::-1] if along == 0 else line for line in lines if line.size]
+    cuts = [_section(config, (keys[1 - along], at), scanned, spans[along]) for at in sections]
+    # Where no section crosses onset there is no row, and no line.
+    rows = np.array(list(zip_longest(*(cut.values for cut in cuts), fillvalue=np.nan)), dtype=np.float64)
+    lines = [line for values in rows for line in _smooth(sections, values)]
+    lines = [line[:, ::-1] if along == 0 else line for line in lines]
     circle = "a circle" if config.geometry.shape == "circle" else "a circle of the same area"
     rest = _without_curve([cut.outcome for cut in cuts if not cut.values], len(cuts))
+    if not lines and any(cut.values for cut in cuts):
+        return OnsetCurve(
+            (), f"The exact annulus ({circle}) changes stability only at an edge of this range{rest}."
+        )
     if not lines:
         return OnsetCurve((), f"The exact annulus ({circle}) does not change stability in this range{rest}.")
     return OnsetCurve(tuple(lines), f"Onset: exact, for {circle}, without dissipation{rest}.")
@@ -113,18 +117,18 @@ def _without_curve(outcomes: list[str], n_sections: int) -> str:
     return f"; of {n_sections} sections no curve crosses {counts}"
 
 
-def _section(config: Config, key: str, span: Span) -> _Section:
+def _section(config: Config, other: tuple[str, float], key: str, span: Span) -> _Section:
     """Values of the scanned parameter at which stability changes; none where theory finds no base state."""
-    annulus, parameter = annulus_of(config.replace(**{key: span[1]})), SCANNED[key]
     guess: BaseState | None = None
 
     def margin(value: float) -> float:
         nonlocal guess
-        guess = state_at(annulus, parameter, value, annulus.duration, guess)
+        guess = state_at(annulus, SCANNED[key], value, annulus.duration, guess)
         return stability_margin(guess).value
 
     values = _spaced(span, _SCAN).tolist()
     try:
+        annulus = annulus_of(config.replace(**{other[0]: float(other[1]), key: float(span[1])}))
         margins = [margin(value) for value in values]
         found = [
             float(brentq(margin, values[i], values[i + 1], rtol=_ACCURACY))
@@ -143,10 +147,12 @@ def _spaced(span: Span, n: int) -> FloatArray:
     return np.array([low, *inner, high])
 
 
-def _smooth(sections: FloatArray, values: FloatArray) -> FloatArray:
-    """A curve through the sections that have a value, monotone between them."""
-    known = np.isfinite(values)
-    if known.sum() < 2:
-        return np.zeros((0, 2))
-    at = np.linspace(sections[known][0], sections[known][-1], _SMOOTH)
-    return np.column_stack([at, PchipInterpolator(sections[known], values[known])(at)])
+def _smooth(sections: FloatArray, values: FloatArray) -> list[FloatArray]:
+    """Curves through neighbouring sections that have a value, monotone between them; none over a gap."""
+    known = np.flatnonzero(np.isfinite(values))
+    runs = [run for run in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1) if run.size >= 2]
+    at = [np.linspace(sections[run[0]], sections[run[-1]], _SMOOTH) for run in runs]
+    return [
+        np.column_stack([x, PchipInterpolator(sections[run], values[run])(x)])
+        for run, x in zip(runs, at, strict=True)
+    ]

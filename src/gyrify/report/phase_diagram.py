@@ -62,7 +62,7 @@ def phase_figure(
     figure = Figure(figsize=(_WIDTH_MM * MM, _HEIGHT_MM * MM), layout="constrained", facecolor="white")
     FigureCanvasAgg(figure)
     left, right = figure.subplots(1, 2, sharex=True, sharey=True)
-    places = np.array([cell.at for cell in cells], dtype=np.float64)
+    places = np.array([cell.at for cell in cells], dtype=np.float64).reshape(-1, 2)
     logs = tuple(is_logarithmic(places[:, axis]) for axis in (0, 1))
     boxes = _boxes(places, logs)
     known = [float(np.mean(cell.gi)) for cell in cells if cell.gi]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -77,8 +78,12 @@ def is_logarithmic(values: FloatArray) -> bool:
     return bool(ratios.std() / ratios.mean() < gaps.std() / gaps.mean())
 
 
+def _is_finite(value: float | None) -> bool:
+    return value is not None and math.isfinite(value)
+
+
 def _cell(at: tuple[Any, ...], group: Sequence[Row]) -> Cell:
-    whole = [row for row in group if row["status"] == "completed" and row["gi_closing"] is not None]
+    whole = [row for row in group if row["status"] == "completed" and _is_finite(row["gi_closing"])]
     labels = [row["phenotype"] for row in whole if row.get("phenotype")]
     return Cell(
         at,

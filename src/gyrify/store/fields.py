@@ -19,7 +19,10 @@ from typing import Final
 import numpy as np
 from scipy.sparse import csr_array
 
+from gyrify.arguments import as_words
+from gyrify.config.faults import nearest
 from gyrify.config.run_sections import ALL_FIELDS, OutputField
+from gyrify.errors import ConfigError
 from gyrify.metrics.contour import distance_to_line
 from gyrify.metrics.curvature import curvature
 from gyrify.model import Slice
@@ -27,6 +30,7 @@ from gyrify.physics.growth import growth_stretch, growth_tensor, out_of_plane_gr
 from gyrify.physics.neo_hookean import derivatives
 from gyrify.solve.types import FloatArray
 from gyrify.store.history import History
+from gyrify.store.indices import state_number
 
 # Fields with a value per point; the others have one per cell.
 POINT_FIELDS: Final[frozenset[OutputField]] = frozenset(
@@ -68,7 +72,7 @@ def fields(
         The run.
     index : int
         State; negative indices count from the end.
-    names : sequence of str
+    names : str or sequence of str
         Fields wanted, of those that ``output.fields`` may name.
 
     Returns
@@ -84,12 +88,27 @@ def fields(
     ------
     HistoryError
         If there is no such state.
+    ConfigError
+        If there is no such field.
     """
-    number = index + len(history) if index < 0 else index
+    number = state_number(index, len(history))
+    wanted = known_fields(names)
     u = history.state_vector(number)
     u_start = history.state_vector(max(number - 1, 0))
     state = FieldMaker(history.slice).state(u, float(history.fractions[number]), u_start)
-    return {name: state[name] for name in names}
+    return {name: state[name] for name in wanted}
+
+
+def known_fields(names: str | Sequence[str]) -> list[OutputField]:
+    """Return the names of fields, or raise ConfigError."""
+    known: dict[str, OutputField] = {name: name for name in ALL_FIELDS}
+    wanted = as_words("names", names)
+    for name in wanted:
+        if name not in known:
+            close = nearest(name, known)
+            hint = f"Did you mean {close}?" if close else f"Choose among {', '.join(known)}."
+            raise ConfigError(f"There is no field {name[:60]!r}.", hint)
+    return [known[name] for name in wanted]
 
 
 class FieldMaker:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gyrify.arguments import Pathlike, as_path
 from gyrify.config import Config
 from gyrify.errors import HistoryError
 from gyrify.mesh import Mesh
@@ -20,6 +20,7 @@ from gyrify.solve.result import Stats
 from gyrify.solve.stability import Onset, StabilityChange
 from gyrify.solve.types import FloatArray
 from gyrify.store.database import RERUN
+from gyrify.store.indices import Index, gathered, state_number
 from gyrify.store.journal import Journal
 from gyrify.store.lock import has_owner
 from gyrify.store.views import Views
@@ -43,7 +44,7 @@ class History(Views):
         self.config = Config.from_toml(journal.meta("config"))
 
     @staticmethod
-    def load(folder: str | Path) -> History:
+    def load(folder: Pathlike) -> History:
         """Read a run folder.
 
         Parameters
@@ -61,7 +62,8 @@ class History(Views):
         HistoryError
             If the folder holds no run, or a damaged one.
         """
-        history = History(Journal.open(Path(folder) / "journal.sqlite", read_only=True))
+        journal = as_path("folder", folder) / "journal.sqlite"
+        history = History(Journal.open(journal, read_only=True))
         if len(history) == 0:
             raise HistoryError(f"The run in {folder} has no state yet.", "Continue it with `gyrify resume`.")
         if history.positions[-1] > TICKS * history.config.solver.increments:
@@ -81,7 +83,7 @@ class History(Views):
     def __len__(self) -> int:
         return len(self.journal)
 
-    def __getitem__(self, index: int) -> FloatArray:
+    def __getitem__(self, index: Index) -> FloatArray:
         return self.displacement(index)
 
     def __iter__(self) -> Iterator[FloatArray]:
@@ -102,15 +104,16 @@ class History(Views):
         """(n_states,) growth time [time]."""
         return self.fractions * self.config.growth.duration
 
-    def displacement(self, index: int = -1) -> FloatArray:
+    def displacement(self, index: Index = -1) -> FloatArray:
         """(n_points, 2) displacement u [mm] of a state.
 
         Parameters
         ----------
-        index : int
-            State; negative numbers count from the end.
+        index : int, slice or sequence of int
+            State; negative numbers count from the end. Several make a first axis: (n_states, n_points, 2).
         """
-        return self.state_vector(index)[: self.mesh.n_points]
+        n_points = self.mesh.n_points
+        return gathered(index, len(self), lambda number: self.state_vector(number)[:n_points], n_points)
 
     def axial_stretch(self, index: int = -1) -> float:
         """Total out-of-plane stretch F33 of a state: 1 in plane strain.
@@ -130,45 +133,41 @@ class History(Views):
         index : int
             State; negative numbers count from the end.
         """
-        number = index + len(self) if index < 0 else index
-        if not 0 <= number < len(self):
-            raise HistoryError(
-                f"There is no state {index}.", f"This history holds states 0 to {len(self) - 1}."
-            )
+        number = state_number(index, len(self))
         found = self.journal.displacement(number)
         if found.shape != self.slice.state_shape:
-            raise HistoryError(f"State {index} does not fit the mesh of its configuration.", RERUN)
+            raise HistoryError(f"State {number} does not fit the mesh of its configuration.", RERUN)
         return found
 
-    def points(self, index: int = -1) -> FloatArray:
+    def points(self, index: Index = -1) -> FloatArray:
         """(n_points, 2) deformed coordinates x [mm] of a state.
 
         Parameters
         ----------
-        index : int
-            State; negative numbers count from the end.
+        index : int, slice or sequence of int
+            As of `displacement`.
         """
         return self.mesh.points + self.displacement(index)
 
-    def contour(self, index: int = -1) -> FloatArray:
+    def contour(self, index: Index = -1) -> FloatArray:
         """(n_contour, 2) deformed outer contour [mm] of a state.
 
         Parameters
         ----------
-        index : int
-            State; negative numbers count from the end.
+        index : int, slice or sequence of int
+            As of `displacement`.
         """
-        return self.points(index)[self.mesh.contour]
+        return self.points(index)[..., self.mesh.contour, :]
 
-    def interface(self, index: int = -1) -> FloatArray:
+    def interface(self, index: Index = -1) -> FloatArray:
         """(n_interface, 2) deformed grey-white interface [mm] of a state.
 
         Parameters
         ----------
-        index : int
-            State; negative numbers count from the end.
+        index : int, slice or sequence of int
+            As of `displacement`.
         """
-        return self.points(index)[self.mesh.interface]
+        return self.points(index)[..., self.mesh.interface, :]
 
     @property
     def status(self) -> str:
@@ -274,7 +273,9 @@ class History(Views):
 
         return to_dataframe(self)
 
-    def to_pyvista(self, index: int = -1, *, time: float | None = None) -> UnstructuredGrid:
+    def to_pyvista(
+        self, index: int = -1, *, time: float | None = None, deformed: bool = True
+    ) -> UnstructuredGrid:
         """A state as a PyVista grid with all its fields; see `gyrify.notebook`.
 
         Parameters
@@ -283,10 +284,12 @@ class History(Views):
             State; negative numbers count from the end.
         time : float, optional
             Growth time, in place of the index; see `at`.
+        deformed : bool
+            Whether points are current ones, or reference ones that ``displacement`` warps.
         """
         from gyrify.notebook import to_pyvista
 
-        return to_pyvista(self, index if time is None else self.at(time))
+        return to_pyvista(self, index if time is None else self.at(time), deformed=deformed)
 
     def _repr_html_(self) -> str:
         from gyrify.notebook import html

@@ -273,7 +273,7 @@ class Journal:
     def _row(self, number: int) -> tuple[Any, ...]:
         with translated(self.name):
             query = "SELECT * FROM increments WHERE number = ?"
-            row: tuple[Any, ...] | None = self._connection.execute(query, (number,)).fetchone()
+            row: tuple[Any, ...] | None = self._connection.execute(query, (int(number),)).fetchone()
         if row is None:
             raise HistoryError(
                 f"The journal {self.name} has no increment {number}.", f"It holds {len(self)}."

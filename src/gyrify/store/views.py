@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gyrify.arguments import real_number
 from gyrify.errors import ConfigError
 from gyrify.solve.types import FloatArray
 
@@ -37,7 +38,7 @@ class Views:
         ConfigError
             If it is outside of that range.
         """
-        times, wanted = self.growth_times, float(time)
+        times, wanted = self.growth_times, real_number("time", time)
         if not 0.0 <= wanted <= times[-1] * (1.0 + 1e-9):
             raise ConfigError(
                 f"time = {wanted:g} is out of range: the run holds growth times 0 to {times[-1]:g}.",

@@ -10,6 +10,7 @@ from pathlib import Path
 from shlex import quote
 from typing import Any, Final, Literal, get_args
 
+from gyrify.arguments import Pathlike, as_path, plain_tables
 from gyrify.config import Config, toml_text
 from gyrify.config.model import merge, read_tables
 from gyrify.config.words import shorten, show
@@ -66,7 +67,7 @@ class Study:
         return f"Study({self.design.kind} of {varied}: {len(self.points())} points, keep {self.keep})"
 
     @classmethod
-    def from_toml(cls, path: str | Path) -> Study:
+    def from_toml(cls, path: Pathlike) -> Study:
         """Read a study file.
 
         Parameters
@@ -79,7 +80,7 @@ class Study:
         ConfigError
             If it cannot be read, or a field is wrong.
         """
-        file = Path(path)
+        file = as_path("path", path)
         name = f"The study file {shorten(str(file), toml_text.MAX_PATH)}"
         tables = toml_text.parse(toml_text.read_text(file), name)
         if _is_configuration(tables):
@@ -106,6 +107,7 @@ class Study:
         ConfigError
             If a field is wrong.
         """
+        tables = plain_tables(tables)
         if _is_configuration(tables):
             raise ConfigError(
                 "This describes one run, not a study: it has no table [design].",

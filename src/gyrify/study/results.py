@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from gyrify.arguments import Pathlike, as_path
 from gyrify.config import Config
 from gyrify.config.words import shorten, show
 from gyrify.errors import ConfigError, HistoryError
@@ -154,7 +155,7 @@ def results_table(points: Sequence[Point], records: Mapping[str, Record]) -> Tab
     return pa.table(columns, pa.schema(described))
 
 
-def read_results(folder: str | Path) -> Table:
+def read_results(folder: Pathlike) -> Table:
     """Results of a study, with the time that each run took.
 
     Parameters
@@ -175,7 +176,7 @@ def read_results(folder: str | Path) -> Table:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    path = Path(folder) / RESULTS
+    path = as_path("folder", folder) / RESULTS
     if not path.is_file():
         raise HistoryError(
             f"There are no results in {folder}.", "Name a folder that `gyrify study` has written."
@@ -266,7 +267,7 @@ def _kind(name: str, values: Sequence[object]) -> DataType:
         return pa.type_for_alias(QUANTITIES[name])
     kinds = {type(value) for value in values if value is not None}
     if not kinds:
-        return pa.string() if name == "result_hash" else pa.float64()
+        return pa.string() if name == "result_hash" or name in _IDENTITY else pa.float64()
     for kind, alias in ({bool}, _BOOL), ({int}, _INT), ({int, float}, _FLOAT):
         if kinds <= kind:
             return pa.type_for_alias(alias)

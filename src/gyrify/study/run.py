@@ -6,9 +6,9 @@ import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack
-from pathlib import Path
 from typing import Any, Final
 
+from gyrify.arguments import Pathlike, as_path, whole_number
 from gyrify.errors import ConfigError
 from gyrify.pool import MAX_WORKERS
 from gyrify.store.faults import storage_faults
@@ -24,7 +24,7 @@ STUDY_FILE: Final = "study.toml"
 
 
 def run_study(
-    study: Study | Mapping[str, Any] | str | os.PathLike[str], folder: str | Path, **options: Any
+    study: Study | Mapping[str, Any] | str | os.PathLike[str], folder: Pathlike, **options: Any
 ) -> StudyResult:
     """Run a study; the same call again computes only what is not known yet.
 
@@ -41,7 +41,7 @@ def run_study(
     -------
     StudyResult
     """
-    study, target = as_study(study), Path(folder)
+    study, target = as_study(study), as_path("folder", folder)
     with storage_faults(target, what="study"):
         target.mkdir(parents=True, exist_ok=True)
         partial_file = fresh(target / f"{STUDY_FILE}.partial")
@@ -52,7 +52,7 @@ def run_study(
 
 def run_points(
     points: Sequence[Point],
-    folder: str | Path,
+    folder: Pathlike,
     *,
     workers: int = 1,
     executor: Executor | None = None,
@@ -99,8 +99,9 @@ def run_points(
     KeyboardInterrupt
         At Ctrl-C; what is done is stored, and the same call continues.
     """
+    workers = whole_number("workers", workers)
     _require_sensible(points, workers, executor, scheduler)
-    target = Path(folder).absolute()
+    target = as_path("folder", folder).absolute()
     with ExitStack() as stack:
         with storage_faults(target, what="study"):
             refuse_link(target / RUNS)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
+from gyrify.arguments import real_number
 from gyrify.config import Config, ConfigLike, as_config
 from gyrify.errors import ConfigError
 from gyrify.limits import Watch
@@ -76,6 +77,8 @@ def critical_growth(
         If a limit of the configuration is reached.
     """
     begun, config = time.perf_counter(), as_config(config)
+    level = real_number("level", level)
+    tolerance = None if tolerance is None else real_number("tolerance", tolerance)
     _check(definition, level, tolerance, workers)
     values = scan_values(config, parameter, range, points, definition == "visible")
     found = _find(config, parameter, definition, values, level, tolerance or TOLERANCE[definition], workers)

@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from gyrify.arguments import native, real_number, whole_number
 from gyrify.config import Config
 from gyrify.errors import ConfigError
 
@@ -81,8 +82,9 @@ def scan_values(
         raise ConfigError(
             f"parameter = {parameter[:60]!r} has no threshold.", f"Choose one of: {', '.join(PARAMETERS)}."
         )
-    low, high = given or (scannable.visible if visible else scannable.stability)(config)
-    count = points or (scannable.runs if visible else scannable.points)
+    default = (scannable.visible if visible else scannable.stability)(config)
+    low, high = default if given is None else _pair(given)
+    count = whole_number("points", points) if points else (scannable.runs if visible else scannable.points)
     if not (np.isfinite([low, high]).all() and low < high):
         raise ConfigError(
             f"range = {low:g} {high:g} is not increasing.", "Give the lower end first, then the upper one."
@@ -94,3 +96,13 @@ def scan_values(
             configured(config, parameter, end)
     spaced = np.geomspace if scannable.logarithmic else np.linspace
     return [low, *(float(value) for value in spaced(low, high, count)[1:-1]), high]
+
+
+def _pair(given: object) -> Range:
+    """Both ends of a range, given as a pair or an array of two."""
+    ends = native(given)
+    if not isinstance(ends, list | tuple) or len(ends) != 2:
+        raise ConfigError(
+            f"range = {str(given)[:60]} is not a pair.", "Give the lower end first, then the upper one."
+        )
+    return real_number("range", ends[0]), real_number("range", ends[1])

@@ -47,6 +47,7 @@ STUDY_SCRIPTS: Final = (
     "study-phase.js",
     "study-open.js",
     "study-compare.js",
+    "study-routes.js",
     "study.js",
 )
 # Characters with a meaning in HTML, and those that end a line in old JavaScript.

@@ -12,8 +12,9 @@ from gyrify.config.run_sections import OutputField
 from gyrify.solve.types import FloatArray
 from gyrify.store.fields import UNITS
 
-# Colours run between these quantiles, so that cells and points in cusps do not wash out the others.
-_OUTER: Final = 0.02
+# Share of the values beyond either end of the colours, so that cells and points in cusps do not wash out the
+# others; `gyrify plot` has the same.
+_OUTER: Final = 0.01
 # A state that is nearly uniform is coloured over at least this part of the range of the whole run.
 _NARROWEST: Final = 1e-3
 
@@ -34,6 +35,9 @@ class ShownField:
         Diverging colours are for signed fields, with zero in the middle.
     about : str
         What it is, in one sentence.
+    outer : float
+        Share of the values beyond either end of its colours. Curvature is far larger in the few points at the
+        bottom of sulci than anywhere else, and would have no colour on crowns.
     """
 
     name: OutputField
@@ -41,6 +45,7 @@ class ShownField:
     place: Literal["cell", "contour"]
     colours: Literal["sequential", "diverging"]
     about: str
+    outer: float = _OUTER
 
     @property
     def unit(self) -> str:
@@ -77,6 +82,7 @@ SHOWN: Final = (
         "contour",
         "diverging",
         "Of the contour: positive at crowns, negative in sulci.",
+        outer=0.15,
     ),
     ShownField(
         "contact_force",
@@ -111,9 +117,10 @@ def describe(field: ShownField, values: FloatArray) -> dict[str, Any]:
     Returns
     -------
     dict
-        With ``ranges`` [low, high] of the colours of each frame, and ``range``, which covers them all.
+        With ``ranges`` [low, high] of the colours of each frame, ``range``, which covers them all, and
+        ``extremes``, the least and the greatest value of each frame.
     """
-    ranges = [colour_range(row, field.colours) for row in values]
+    ranges = [colour_range(row, field.colours, field.outer) for row in values]
     whole = _widened([min(low for low, _ in ranges), max(high for _, high in ranges)], 0.0)
     least = _NARROWEST * (whole[1] - whole[0])
     return {
@@ -124,23 +131,30 @@ def describe(field: ShownField, values: FloatArray) -> dict[str, Any]:
         "colours": field.colours,
         "about": field.about,
         "range": whole,
+        "extremes": [_extremes(row) for row in values],
         "ranges": [_widened(ends, least) for ends in ranges],
     }
 
 
-def colour_range(values: FloatArray, colours: str) -> list[float]:
+def colour_range(values: FloatArray, colours: str, outer: float = _OUTER) -> list[float]:
     """Ends of the colours of one state: outer quantiles; for signed fields as far on both sides of zero."""
     finite = values[np.isfinite(values)]
     if finite.size == 0:
         return [0.0, 0.0]
+    low, high = (float(end) for end in np.quantile(finite, (outer, 1.0 - outer)))
     if colours == "diverging":
-        end = float(np.quantile(np.abs(finite), 1.0 - 2.0 * _OUTER))
+        end = max(-low, high)
         return [-end, end]
-    low, high = (float(end) for end in np.quantile(finite, (_OUTER, 1.0 - _OUTER)))
     if high > low:
         return [low, high]
     # Nearly everywhere one value (hardly any contact yet, say): show what there is.
     return [float(finite.min()), float(finite.max())]
+
+
+def _extremes(values: FloatArray) -> list[float]:
+    """Least and greatest value; 0 where none is defined."""
+    finite = values[np.isfinite(values)]
+    return [float(finite.min()), float(finite.max())] if finite.size else [0.0, 0.0]
 
 
 def _widened(ends: list[float], least: float) -> list[float]:

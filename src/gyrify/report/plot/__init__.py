@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from functools import partial
 from io import BytesIO
-from pathlib import Path
 from typing import Final, Literal, get_args
 
 from matplotlib.figure import Figure
 
+from gyrify.arguments import as_path, real_number
 from gyrify.errors import ConfigError
 from gyrify.report.plot.dispersion import dispersion_plot
 from gyrify.report.plot.energy import energy_plot
@@ -49,7 +50,7 @@ def plot(
     run: Run,
     what: Kind = "folded",
     *,
-    compare: Sequence[Run] = (),
+    compare: Run | Sequence[Run] = (),
     at: float | None = None,
     stress: str | None = None,
     width_mm: float | None = None,
@@ -67,7 +68,7 @@ def plot(
         of the cortex, as colour and along the contour [mm]. ``energy``: work of growth, stored, dissipated,
         in contact and lost in jumps [mJ/mm]. ``mode``: the mode along which stability was lost.
         ``dispersion``: exact growth at onset against mode number, with the onset of the run.
-    compare : sequence of History or path, optional
+    compare : History, path, or sequence of them, optional
         Further runs to show beside it, at the same scale and in the same colours: any number in a grid of
         slices, at most seven where curves share their axes (``gi``, ``energy``, ``dispersion``).
     at : float, optional
@@ -94,10 +95,13 @@ def plot(
     --------
     >>> figure = gyrify.plot("runs/reference-slice", "stress", at=300.0)  # doctest: +SKIP
     """
-    _check(what, len(compare), at, stress, width_mm)
+    others = [compare] if isinstance(compare, History | str | os.PathLike) else list(compare)
+    at = None if at is None else real_number("at", at)
+    width_mm = None if width_mm is None else real_number("width_mm", width_mm)
+    _check(what, len(others), at, stress, width_mm)
     if not isinstance(run, History) and is_study(run):
-        return _seen(study_plot(Path(run), what, len(compare), at, width_mm))
-    states = show([run, *compare], at)
+        return _seen(study_plot(as_path("run", run), what, len(others), at, width_mm))
+    states = show([run, *others], at)
     if what == "stress":
         return _seen(stress_plot(states, width_mm, stress))
     return _seen(_MAKERS[what](states, width_mm))
@@ -117,8 +121,10 @@ def _png(figure: Figure) -> bytes:
 
 def _check(what: str, others: int, at: float | None, stress: str | None, width_mm: float | None) -> None:
     """Refuse what no picture can show, before a run is read."""
-    if what not in KINDS:
-        raise ConfigError(f"what = {what[:60]!r} is not a picture.", f"Choose one of: {', '.join(KINDS)}.")
+    if not isinstance(what, str) or what not in KINDS:
+        raise ConfigError(
+            f"what = {str(what)[:60]!r} is not a picture.", f"Choose one of: {', '.join(KINDS)}."
+        )
     most = len(HUES) if what in _CURVES else _MOST_RUNS
     if others >= most:
         advice = "Compare fewer runs, or choose what = folded." if what in _CURVES else "Compare fewer runs."

@@ -6,7 +6,6 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -102,7 +101,7 @@ def show(runs: Sequence[Run], at: float | None = None) -> list[Shown]:
     HistoryError
         If there is no run in a folder.
     """
-    histories = [run if isinstance(run, History) else History.load(Path(run)) for run in runs]
+    histories = [run if isinstance(run, History) else History.load(run) for run in runs]
     names = _names(histories) if len(histories) > 1 else [run_title(histories[0])]
     return [Shown(h, nearest_state(h, at), name) for h, name in zip(histories, names, strict=True)]
 

@@ -63,7 +63,9 @@ function createZoomButtons(pointer) {
 function createModeSwitch(viewer, onset, onChange) {
   let request = 0;
   const swing = (start) => (now) => {
-    viewer.set({ mode: Math.round(40 * Math.sin((now - start) / 450)) / 40 });
+    const part = Math.round(40 * Math.cos((now - start) / 450)) / 40;
+    amplitude.value = part;
+    viewer.set({ mode: part });
     request = requestAnimationFrame(swing(start));
   };
   const amplitude = element("input", {
@@ -82,6 +84,7 @@ function createModeSwitch(viewer, onset, onChange) {
     cancelAnimationFrame(request);
     show(bar, isOn);
     viewer.set({ mode: isOn ? 1 : null });
+    if (isOn) amplitude.value = 1;
     const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
     if (isOn && !isStill) request = requestAnimationFrame(swing(performance.now()));
     onChange(isOn);

@@ -12,14 +12,15 @@ function createColourBar(viewer, colours) {
     const field = viewer.field();
     const isTissue = field === REGION || viewer.state.mode !== null;
     const limits = viewer.limits();
-    const key = [field.name, isTissue, ...limits].join();
+    const beyond = beyondOf(limits, viewer.extremes());
+    const key = [field.name, isTissue, ...limits, ...beyond].join();
     if (key === shown) return;
     shown = key;
     title.textContent = isTissue ? "tissue" : field.unit ? `${field.label} [${field.unit}]` : field.label;
     show(strip.parentNode, !isTissue);
     show(swatches, isTissue);
     if (isTissue) drawSwatches(swatches, colours.region);
-    else drawBar(strip, labels, colours[field.colours], limits);
+    else drawBar(strip, labels, colours[field.colours], limits, beyond);
   };
   viewer.drawn.listen(update);
   return host;
@@ -34,8 +35,21 @@ function drawSwatches(host, [white, grey]) {
   host.replaceChildren(swatch(grey, "grey matter"), swatch(white, "white matter"));
 }
 
-function drawBar(strip, labels, samples, limits) {
+// Whether values lie below and above the ends of the colours.
+function beyondOf([low, high], [least, most]) {
+  const rounding = 1e-6 * (high - low);
+  return [least < low - rounding, most > high + rounding];
+}
+
+// A bar whose end is pointed has values beyond it, in the colour of that end.
+function drawBar(strip, labels, samples, limits, [isBelow, isAbove] = [false, false]) {
   strip.style.background = cssGradient(samples, "to top");
+  const point = (name, colour, isThere) => {
+    const tip = element("span", { class: `bar-tip ${name}`, hidden: !isThere });
+    tip.style.background = colour;
+    return tip;
+  };
+  strip.replaceChildren(point("above", samples[samples.length - 1], isAbove), point("below", samples[0], isBelow));
   const [low, high] = limits;
   labels.replaceChildren(...ticks(low, high, 5).map((value) => {
     const label = element("span", { class: "bar-label" }, brief(value));
@@ -97,7 +111,7 @@ function createTooltip() {
   return {
     host,
     hide: () => show(host, false),
-    show(found, px, py, width) {
+    show(found, px, py, { width, height }) {
       const { field } = found;
       const { text, error } = field === REGION ? { text: tissue(found) } : exactly(found);
       const place = `x ${brief(found.x)}, y ${brief(found.y)} mm`;
@@ -108,10 +122,12 @@ function createTooltip() {
         element("span", { class: "faint" }, place),
         field === REGION ? null : element("span", { class: "faint" }, `shown to ± ${brief(error, 2)}`));
       show(host, true);
-      const isRight = px > width - 220;
-      host.style.left = `${px + (isRight ? -14 : 14)}px`;
-      host.style.top = `${py + 14}px`;
-      host.classList.toggle("to-left", isRight);
+      // Beside the pointer, and wholly within the scene.
+      const [w, h] = [host.offsetWidth, host.offsetHeight];
+      const left = px + 14 + w <= width - 4 ? px + 14 : px - 14 - w;
+      const top = py + 14 + h <= height - 4 ? py + 14 : py - 14 - h;
+      host.style.left = `${clamp(left, 4, Math.max(width - w - 4, 4))}px`;
+      host.style.top = `${clamp(top, 4, Math.max(height - h - 4, 4))}px`;
     },
   };
 }

@@ -8,20 +8,28 @@ async function createPanel(run, payloadId, colours, { field = "von_mises", isAct
   const pointer = connectPointer(viewer, tooltip);
   const first = model.fields.has(field) ? field : "region";
   const choice = createFieldChoice(run.frames.fields, first, (name) => {
-    if (mode) mode.leave();
     viewer.set({ field: name });
+    if (mode) mode.leave();
+    choice.set(name);
     describeScene();
   });
   const mode = model.hasMode ? createModeSwitch(viewer, run.onset, (isOn) => {
     player.toggle(false);
     plots.mark(isOn ? run.onset.growth_time : model.times[player.frame]);
+    // The scene shows the tissues at onset: so do the choice of colours, the slider and the text beside it.
+    choice.set(isOn ? REGION.name : viewer.state.field);
+    if (isOn) player.showTime(run.onset.growth_time, "onset");
+    else player.seek(player.frame);
+    describeScene();
   }) : null;
   const plots = createPlots(run.plots, {
-    duration: run.duration, onset: run.onset && run.onset.growth_time, onSeek: (time) => player.seekTime(time),
+    duration: run.duration, onset: run.onset, onSeek: (time) => player.seekTime(time),
   });
   const describeScene = () => {
-    const what = viewer.field().label;
-    viewer.canvas.setAttribute("aria-label", `${run.name}, coloured by ${what}, growth time ${brief(model.times[player.frame])}. Plus and minus zoom, 0 shows all.`);
+    const shown = viewer.state.mode === null
+      ? `coloured by ${viewer.field().label}, growth time ${brief(model.times[player.frame])}`
+      : `critical mode at onset, growth time ${brief(run.onset.growth_time)}`;
+    viewer.canvas.setAttribute("aria-label", `${run.name}, ${shown}. Plus and minus zoom, 0 shows all.`);
   };
   player.changed.listen((frame) => {
     if (mode) mode.leave();

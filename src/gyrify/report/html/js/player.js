@@ -16,13 +16,24 @@ function createPlayer(times, duration) {
   let timer = null;
 
   player.seek = (frame) => {
-    player.frame = clamp(frame, 0, last);
+    player.frame = clamp(Math.round(frame), 0, last);
+    slider.step = 1;
     slider.value = player.frame;
     slider.style.setProperty("--part", last ? player.frame / last : 1);
     const time = times[player.frame];
     slider.setAttribute("aria-valuetext", `growth time ${brief(time)} of ${brief(duration)}`);
     text.replaceChildren("t ", element("strong", {}, brief(time)), ` of ${brief(duration)}`);
     changed.emit(player.frame);
+  };
+  // A state between or beside the stored ones: the thumb stands where it belongs, and the text says what it is.
+  player.showTime = (time, name) => {
+    const after = times.findIndex((t) => t >= time);
+    const k = after < 0 ? last : after;
+    const gap = k > 0 ? times[k] - times[k - 1] : 0;
+    slider.step = "any";
+    slider.value = clamp(gap > 0 ? k - (times[k] - time) / gap : k, 0, last);
+    slider.setAttribute("aria-valuetext", `${name}, growth time ${brief(time)} of ${brief(duration)}`);
+    text.replaceChildren(`${name}, t `, element("strong", {}, brief(time)), ` of ${brief(duration)}`);
   };
   // The stored state nearest to a growth time.
   player.seekTime = (time) => {

@@ -5,9 +5,13 @@ const DASHES = ["", "5 3", "1.5 2.5", "8 3 2 3"];
 
 // `plots` of one run or, to compare, of several: each line may carry a `run` number.
 function createPlots(plots, { duration, onset, onSeek }) {
-  const drawn = plots.map((plot) => createPlot(plot, duration, onset, onSeek));
+  const drawn = plots.map((plot) => createPlot(plot, duration, onset && onset.growth_time, onSeek));
+  const key = (name, text) => element("span", {}, svg("svg", { viewBox: "0 0 8 14", class: "key-upright", "aria-hidden": "true" },
+    svg("line", { class: name, x1: 4, x2: 4, y1: 0, y2: 14 })), text);
+  const keys = element("p", { class: "line-keys" }, key("marker-key", "growth time on view"),
+    onset ? key("onset-key", `onset: stability lost at ${brief(onset.growth_time)}`) : null);
   return {
-    host: element("div", { class: "plots" }, drawn.map((plot) => plot.host)),
+    host: element("div", { class: "plots" }, keys, drawn.map((plot) => plot.host)),
     mark: (time) => drawn.forEach((plot) => plot.mark(time)),
   };
 }
@@ -28,6 +32,7 @@ function createPlot(plot, duration, onset, onSeek) {
       class: `curve line-${k}`, d: pathOf(line.times || plot.times, line.values, x, y), "stroke-dasharray": DASHES[k % 4],
     })),
     marker, dots);
+  keepTextLegible(picture, PLOT.width);
   connectSeek(picture, (part) => onSeek(clamp((part * PLOT.width - PLOT.left) / inner.w, 0, 1) * duration));
   const mark = (time) => {
     marker.setAttribute("x1", x(time));
@@ -96,6 +101,14 @@ function pathOf(times, values, x, y) {
     isPenDown = value !== null;
     return step;
   }).join("");
+}
+
+// Text of a picture that is drawn smaller than it was made for is made larger, to stay as large on the screen.
+function keepTextLegible(picture, width) {
+  new ResizeObserver(() => {
+    const shown = picture.getBoundingClientRect().width;
+    if (shown > 0) picture.style.setProperty("--text-scale", Math.max(width / shown, 0.5));
+  }).observe(picture);
 }
 
 function connectSeek(picture, onSeek) {

@@ -1,15 +1,23 @@
 // Two runs side by side: one field, one range of colours, one growth time, one view.
 
-async function openComparison(study, [first, second], colours) {
+function openComparison(study, [first, second], colours) {
   const runs = [study.runs[first], study.runs[second]];
   const viewers = [];
   const place = element("div", { class: "pair" });
   const controls = element("div", { class: "toolbar" });
   const foot = element("div", {});
-  openDialog("Side by side", [controls, place, foot, createDifferences(study, runs)], () => viewers.map(releaser));
+  const dialog = openDialog("Side by side", [controls, place, foot, createDifferences(study, runs)], () => viewers.map(releaser));
+  return { dialog, drawn: drawPair({ dialog, runs, viewers, place, controls, foot, colours }) };
+}
+
+async function drawPair({ dialog, runs, viewers, place, controls, foot, colours }) {
   for (const run of runs) {
     const model = await loadModel(run, run.payload);
     viewers.push(createViewer(model, colours));
+  }
+  if (!dialog.isConnected) {
+    viewers.forEach((viewer) => viewer.release());
+    return;
   }
   const tooltips = viewers.map(createTooltip);
   const pointers = viewers.map((viewer, k) => connectPointer(viewer, tooltips[k]));

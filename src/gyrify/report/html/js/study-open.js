@@ -15,7 +15,7 @@ function openDialog(title, content, panels) {
   return dialog;
 }
 
-async function openRun(study, index, colours) {
+function openRun(study, index, colours) {
   const run = study.runs[index];
   const panels = [];
   const place = element("div", {});
@@ -24,14 +24,20 @@ async function openRun(study, index, colours) {
   if (!run.payload) {
     place.append(element("div", { class: "large-outline" }, createOutline(run.outline, run.title)),
       element("p", { class: "remark" }, run.missing || "This page has no room for the scene of this run; its own report has it."));
-    return;
+    return { dialog };
   }
-  const panel = await createPanel(run, run.payload, colours, { isActive: () => dialog.open });
-  panels.push(panel);
-  show(panel.player.host, panel.model.nFrames > 1);
-  panel.host.querySelector(".plots").append(createValues(study, run));
-  place.append(panel.host);
-  window.gyrify.panel = panel;
+  const drawn = createPanel(run, run.payload, colours, { isActive: () => dialog.open }).then((panel) => {
+    if (!dialog.isConnected) {
+      panel.release(); // it was closed before it was drawn
+      return;
+    }
+    panels.push(panel);
+    show(panel.player.host, panel.model.nFrames > 1);
+    panel.host.querySelector(".plots").append(createValues(study, run));
+    place.append(panel.host);
+    window.gyrify.panel = panel;
+  });
+  return { dialog, drawn };
 }
 
 function grownPart(run) {

@@ -1,6 +1,7 @@
 // The phase diagram: any quantity over two of the parameters that vary.
 
-const PHASE = { width: 640, height: 420, left: 70, right: 14, top: 12, bottom: 52 };
+const PHASE = { width: 640, height: 420, left: 70, right: 14, top: 12, bottom: 52 }; // CSS pixels
+const PHASE_NARROWEST = 280;
 
 function createPhase(study, colours, onOpen) {
   const choices = { x: study.axes[0], y: study.axes[1] };
@@ -9,11 +10,12 @@ function createPhase(study, colours, onOpen) {
   const picture = element("div", { class: "phase-picture" });
   const bar = element("div", { class: "phase-bar" });
   const label = (key) => study.columns.find((column) => column.key === key);
+  let width = PHASE.width;
   const update = () => {
     const cells = phaseCells(study.runs, choices);
     const found = cells.map((cell) => cell.mean).filter((value) => value !== null);
     const range = found.length ? [Math.min(...found), Math.max(...found)] : [0, 1];
-    picture.replaceChildren(drawPhase(cells, choices, range, { label, colours, onOpen }));
+    picture.replaceChildren(drawPhase(cells, choices, range, { label, colours, onOpen, width }));
     bar.replaceChildren(phaseBar(label(choices.quantity), range, colours.sequential));
   };
   const select = (name, options) => {
@@ -27,6 +29,13 @@ function createPhase(study, colours, onOpen) {
     axes.length > 2 ? element("label", {}, "across ", select("x", axes)) : null,
     axes.length > 2 ? element("label", {}, "up ", select("y", axes)) : null);
   update();
+  // A pixel of the picture is one of the screen, so that its text is as large as that of the page.
+  new ResizeObserver(() => {
+    const found = Math.max(Math.round(picture.clientWidth), PHASE_NARROWEST);
+    if (found === width || picture.clientWidth < 2) return;
+    width = found;
+    update();
+  }).observe(picture);
   return element("div", {}, controls, element("div", { class: "phase" }, picture, bar));
 }
 
@@ -48,11 +57,11 @@ function phaseCells(runs, { x, y, quantity }) {
 }
 
 // Few distinct values make a grid of cells; scattered ones are points on linear axes.
-function drawPhase(cells, { x, y, quantity }, range, { label, colours, onOpen }) {
+function drawPhase(cells, { x, y, quantity }, range, { label, colours, onOpen, width }) {
   const values = (name) => [...new Set(cells.map((cell) => cell[name]))].sort((a, b) => a - b);
   const [xs, ys] = [values("x"), values("y")];
   const isGrid = xs.length * ys.length <= 2 * cells.length && xs.length <= 24 && ys.length <= 24;
-  const inner = { w: PHASE.width - PHASE.left - PHASE.right, h: PHASE.height - PHASE.top - PHASE.bottom };
+  const inner = { w: width - PHASE.left - PHASE.right, h: PHASE.height - PHASE.top - PHASE.bottom };
   const place = {
     x: isGrid ? gridPlace(xs, PHASE.left, inner.w) : linearPlace(xs, PHASE.left, inner.w),
     y: isGrid ? gridPlace(ys, PHASE.top + inner.h, -inner.h) : linearPlace(ys, PHASE.top + inner.h, -inner.h),
@@ -64,12 +73,18 @@ function drawPhase(cells, { x, y, quantity }, range, { label, colours, onOpen })
   }));
   const text = (at, content, extra = {}) => svg("text", { class: "tick", x: at[0], y: at[1], "text-anchor": "middle", ...extra }, content);
   const bottom = PHASE.top + inner.h;
-  return svg("svg", { viewBox: `0 0 ${PHASE.width} ${PHASE.height}`, class: "phase-svg", role: "group", "aria-label": "phase diagram" },
-    (isGrid ? xs : ticks(xs[0], xs[xs.length - 1], 6)).map((v) => text([place.x(v), bottom + 18], brief(v, 3))),
-    (isGrid ? ys : ticks(ys[0], ys[ys.length - 1], 6)).map((v) => text([PHASE.left - 8, place.y(v) + 4], brief(v, 3), { "text-anchor": "end" })),
+  return svg("svg", { viewBox: `0 0 ${width} ${PHASE.height}`, class: "phase-svg", role: "group", "aria-label": "phase diagram" },
+    thinned(isGrid ? xs : ticks(xs[0], xs[xs.length - 1], 6), inner.w, 44).map((v) => text([place.x(v), bottom + 18], brief(v, 3))),
+    thinned(isGrid ? ys : ticks(ys[0], ys[ys.length - 1], 6), inner.h, 18).map((v) => text([PHASE.left - 8, place.y(v) + 4], brief(v, 3), { "text-anchor": "end" })),
     text([PHASE.left + inner.w / 2, PHASE.height - 10], label(x).label, { class: "axis-title" }),
     text([16, PHASE.top + inner.h / 2], label(y).label, { class: "axis-title", transform: `rotate(-90 16 ${PHASE.top + inner.h / 2})` }),
     marks);
+}
+
+// So many of the labels that each has room.
+function thinned(labels, length, room) {
+  const every = Math.max(1, Math.ceil((labels.length * room) / length));
+  return labels.filter((_, k) => k % every === 0);
 }
 
 function gridPlace(values, start, length) {

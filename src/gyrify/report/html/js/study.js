@@ -7,7 +7,8 @@ window.gyrify = { report };
 function showStudy({ study, colours }) {
   document.title = `${study.name} · gyrify`;
   const selection = createSelection(study.runs);
-  const open = (index) => openRun(study, index, colours);
+  const routes = createRoutes(study, colours);
+  const open = (index) => routes.go("run", [index]);
   const redraw = () => [window.gyrify.panel && window.gyrify.panel.viewer, ...(window.gyrify.pair || [])]
     .forEach((viewer) => viewer && viewer.redraw());
   const page = document.getElementById("page");
@@ -16,8 +17,10 @@ function showStudy({ study, colours }) {
     page.append(block("Phase diagram", createPhase(study, colours, open)));
   }
   page.append(
-    block("Runs", createFilter(study, selection), createCompareBar(study, selection, colours), createTable(study, selection, open)),
-    block("Shapes, at one scale", createGallery(study, selection, open)));
+    block("Runs", createFilter(study, selection), createCompareBar(study, selection, routes), createTable(study, selection, open),
+      createPager(selection)),
+    block("Shapes, at one scale", createGallery(study, selection, open), createPager(selection)));
+  routes.follow();
 }
 
 function block(title, ...content) {
@@ -43,9 +46,9 @@ function createStudyNotices(study) {
     element("ul", {}, shown, early.length > 5 ? element("li", {}, `and ${early.length - 5} more`) : null))];
 }
 
-function createCompareBar(study, selection, colours) {
+function createCompareBar(study, selection, routes) {
   const button = element("button", {
-    type: "button", class: "plain", click: () => openComparison(study, selection.compared, colours),
+    type: "button", class: "plain", click: () => routes.go("compare", selection.compared),
   }, "Show side by side");
   const text = element("span", { class: "faint" });
   const update = () => {
@@ -62,9 +65,13 @@ function createCompareBar(study, selection, colours) {
 // Thumbnails follow the table: the same runs in the same order.
 function createGallery(study, selection, onOpen) {
   const largest = Math.max(...study.runs.map((run) => (run.outline ? run.outline.width_mm : 0)));
-  const thumbnails = study.runs.map((run, index) => createThumbnail(run, index, largest, onOpen));
+  const thumbnails = new Map();
+  const thumbnail = (k) => {
+    if (!thumbnails.has(k)) thumbnails.set(k, createThumbnail(study.runs[k], k, largest, onOpen));
+    return thumbnails.get(k);
+  };
   const host = element("div", { class: "gallery" });
-  const update = () => host.replaceChildren(...selection.indices().map((k) => thumbnails[k]));
+  const update = () => host.replaceChildren(...selection.shown().map(thumbnail));
   selection.changed.listen(update);
   update();
   return host;

@@ -1,7 +1,7 @@
 // The scene: one frame of one run, coloured by one field.
 
 const REGION = { name: "region", label: "tissue", place: "cell", unit: "" };
-const BAND_WIDTH = 7; // pixels of the band that carries a field of the contour
+const BAND_WIDTH = 10; // pixels of the band that carries a field of the contour
 const REST = 120; // milliseconds without a change after which the scene is drawn finely
 
 function createViewer(model, colours) {
@@ -20,6 +20,13 @@ function createViewer(model, colours) {
     const field = viewer.field();
     if (field === REGION) return [0, 1];
     return state.limits || (state.scope === "run" ? field.range : field.ranges[state.frame]);
+  };
+  // Least and greatest value that the colours are to cover: of the run, or of the state on view.
+  viewer.extremes = () => {
+    const field = viewer.field();
+    if (field === REGION) return [0, 1];
+    if (state.scope !== "run") return field.extremes[state.frame];
+    return [Math.min(...field.extremes.map((e) => e[0])), Math.max(...field.extremes.map((e) => e[1]))];
   };
   viewer.positions = () => (state.mode === null ? model.positions(state.frame) : modeShape(model, state.mode));
   viewer.set = (changes) => {
@@ -155,6 +162,8 @@ function drawLines(viewer, ink, bandField) {
   };
   const x = viewer.positions();
   const dark = { colour: themeColour("--ink") };
+  // The contour lies between tissue and page: light on a dark one.
+  const outer = { colour: themeColour("--contour") };
   line(x, "interface", dark, 0.8);
   line(x, "clamped", dark, 0.8);
   if (bandField) {
@@ -164,5 +173,5 @@ function drawLines(viewer, ink, bandField) {
     line(x, "contour", { limits: viewer.limits() }, BAND_WIDTH, { values, ...sides });
   }
   if (state.mode !== null) line(model.modePositions(0), "contour", { colour: themeColour("--mark") }, 1.6);
-  line(x, "contour", dark, bandField ? 1 : 1.6);
+  line(x, "contour", outer, bandField ? 1 : 1.6);
 }

@@ -1,0 +1,38 @@
+"""What files for other programs have in common: vectors in space, fields by place, names of several files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from gyrify.config.run_sections import OutputField
+from gyrify.solve.types import FloatArray
+from gyrify.store.fields import POINT_FIELDS, fields
+from gyrify.store.history import History
+
+
+def point_and_cell_data(
+    history: History, number: int, names: tuple[OutputField, ...]
+) -> tuple[dict[str, FloatArray], dict[str, list[FloatArray]]]:
+    """Point and cell data of a state: vectors with three entries, tensors with nine (row by row)."""
+    point_data: dict[str, FloatArray] = {}
+    cell_data: dict[str, list[FloatArray]] = {}
+    for name, values in fields(history, number, names).items():
+        if name in POINT_FIELDS:
+            point_data[name] = padded(values) if values.ndim == 2 else values
+        else:
+            cell_data[name] = [values.reshape(-1, 9) if values.ndim == 3 else values]
+    return point_data, cell_data
+
+
+def padded(vectors: FloatArray) -> FloatArray:
+    """(n, 3) vectors with a zero third component."""
+    return np.pad(vectors, ((0, 0), (0, 1)))
+
+
+def numbered(path: Path, states: list[int]) -> list[Path]:
+    """The path itself for one state; ``stem_0000.ext``, numbered by increment, for several."""
+    if len(states) == 1:
+        return [path]
+    return [path.with_name(f"{path.stem}_{number:04d}{path.suffix}") for number in states]
