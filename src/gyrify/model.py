@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from gyrify.config import Config
+from gyrify.energy.collision import LibraryName
 from gyrify.energy.contact import ContactEnergy, ContactSurface
 from gyrify.energy.kinematics import ElasticKinematics
 from gyrify.energy.term import EnergyTerm, FloatArray, IntArray
@@ -45,7 +46,14 @@ class Slice(Tissue):
         Every number of the run.
     mesh : Mesh, optional
         Mesh to use instead of the configured one.
+
+    Attributes
+    ----------
+    contact_library : str
+        What searches pairs and follows paths; to be set before the contour is used.
     """
+
+    contact_library: LibraryName = "auto"
 
     def varied(self, config: Config) -> Slice:
         """Slice of another configuration on the same mesh; what depends on the mesh alone is shared."""
@@ -66,7 +74,8 @@ class Slice(Tissue):
     @cached_property
     def surface(self) -> ContactSurface:
         """Outer contour, for contact."""
-        return ContactSurface(self.mesh.points, self.mesh.contour, self.mesh.is_closed, self.mesh.period)
+        mesh = self.mesh
+        return ContactSurface(mesh.points, mesh.contour, mesh.is_closed, mesh.period, self.contact_library)
 
     @cached_property
     def free_mass(self) -> FloatArray:

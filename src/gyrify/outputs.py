@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
-
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING, Any
 
 from gyrify.errors import HistoryError
 from gyrify.report.figures import folded_figure, save_figure
@@ -17,6 +15,9 @@ from gyrify.store.faults import storage_faults
 from gyrify.store.history import History
 from gyrify.store.vtkhdf import write_vtkhdf
 from gyrify.summary import summarise, write_metrics, write_summary
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def write_outputs(history: History, folder: str | Path) -> dict[str, Any]:

@@ -20,6 +20,7 @@ from gyrify.cli.animate import animate
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, USAGE
 from gyrify.cli.converge import converge
 from gyrify.cli.early import ignore_interrupts
+from gyrify.cli.environment import restore_docstrings, tidy_environment
 from gyrify.cli.overrides import STANDARD_INPUT
 from gyrify.cli.paper import paper
 from gyrify.cli.plot import plot
@@ -30,6 +31,9 @@ from gyrify.cli.study import study
 from gyrify.cli.table import table
 from gyrify.cli.threshold import threshold
 from gyrify.errors import ConfigError, GyrifyError, HistoryError, MeshError
+
+for _name in [name for name in sys.modules if name.startswith("gyrify.cli.")]:
+    restore_docstrings(sys.modules[_name])
 
 app = App(
     name="gyrify",
@@ -68,6 +72,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         0 completed, 1 failed, 2 usage or configuration, 3 stopped by a limit, 130 interrupted.
     """
+    if arguments is None:
+        tidy_environment()
     given = sys.argv[1:] if arguments is None else arguments
     tokens = [str(STANDARD_INPUT) if token == "-" else token for token in given]
     try:

@@ -14,7 +14,7 @@ three-dimensional gradient whose 33 entry is held: J and I1 are formed with it, 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+from gyrify.compiled import njit
 from numpy.typing import NDArray
 
 from gyrify.physics.neo_hookean import density, derivatives
