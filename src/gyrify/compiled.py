@@ -83,7 +83,7 @@ def _tell(what: str) -> None:
 
 def _guarded(dispatcher: Any) -> Any:
     """Make the cache of a compiled function fit for many processes, and for disks that fail."""
-    cache = getattr(dispatcher, "_cache", None)
+    cache: Any = getattr(dispatcher, "_cache", None)
     file = getattr(cache, "_cache_file", None)
     if file is None:  # nothing is kept, or another numba keeps it in another way
         return dispatcher

@@ -50,14 +50,20 @@ class Slice(Tissue):
     Attributes
     ----------
     contact_library : str
-        What searches pairs and follows paths; to be set before the contour is used.
+        What searches pairs and follows paths; see `gyrify.energy.collision.contact_library`.
     """
 
     contact_library: LibraryName = "auto"
 
+    def use_contact_library(self, name: LibraryName) -> None:
+        """Have contact computed by another library."""
+        self.contact_library = name
+        self.__dict__.pop("surface", None)
+
     def varied(self, config: Config) -> Slice:
         """Slice of another configuration on the same mesh; what depends on the mesh alone is shared."""
         other = Slice(config, self.mesh)
+        other.contact_library = self.contact_library
         shared = (
             "simplices",
             "pattern",

@@ -93,7 +93,9 @@ class PlanarBarrier:
         self._contour = contour
         self._limit, self._scale = d_hat**2, stiffness * d_hat
 
-    def evaluate(self, pairs: IntArray, vertices: FloatArray, order: int, project_psd: bool) -> PairSum | None:
+    def evaluate(
+        self, pairs: IntArray, vertices: FloatArray, order: int, project_psd: bool
+    ) -> PairSum | None:
         """See `gyrify.energy.collision.Barrier`."""
         x = np.ascontiguousarray(vertices)
         vertex, vertex_weight, edge, edge_weight = self._close(pairs, x)
@@ -108,7 +110,9 @@ class PlanarBarrier:
         if order == 1:
             return PairSum(float(value), gradient)
         # Without pairs too, so that everything is compiled before the first increment.
-        parts = [_entries(ends, block, project_psd) for ends, block in zip((vertex, edge), blocks, strict=True)]
+        parts = [
+            _entries(ends, block, project_psd) for ends, block in zip((vertex, edge), blocks, strict=True)
+        ]
         row, col, data = (np.concatenate(columns) for columns in zip(*parts, strict=True))
         return PairSum(float(value), gradient, (row, col, data)) if data.size else None
 

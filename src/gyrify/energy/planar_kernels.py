@@ -18,7 +18,7 @@ ADVANCE = 0.9
 MOST_ADVANCES = 100_000
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def meeting_boxes(low, high, edges, n_own, order, pairs):
     """Write vertices and edges whose boxes meet, as far as there is room; how many there are.
 
@@ -50,7 +50,7 @@ def meeting_boxes(low, high, edges, n_own, order, pairs):
     return found
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def nearest(px, py, ax, ay, bx, by):
     """Squared distance from a point to a segment, and where: 0 or 1 at an end, 2 between them."""
     ex, ey, qx, qy = bx - ax, by - ay, px - ax, py - ay
@@ -63,7 +63,7 @@ def nearest(px, py, ax, ay, bx, by):
     return cross * cross / length, 2
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def close_pairs(x, edges, pairs, limit, kind, squared):
     """Write where the edge of each pair is nearest to its vertex, and the squared distance; -1 if too far."""
     for n in range(pairs.shape[0]):
@@ -74,7 +74,7 @@ def close_pairs(x, edges, pairs, limit, kind, squared):
             kind[n] = -1
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def barrier(s):
     """b(s) = -(s - 1)^2 ln s and its first two derivatives."""
     r, logarithm = s - 1.0, np.log(s)
@@ -82,7 +82,7 @@ def barrier(s):
     return -r * r * logarithm, first, -2.0 * logarithm - 4.0 * r / s + r * r / (s * s)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def vertex_pairs(x, ends, weight, scale, limit, order, gradient, blocks):
     """Energy of pairs of vertices; add their forces, write their (4, 4) matrices."""
     total = 0.0
@@ -110,7 +110,7 @@ def vertex_pairs(x, ends, weight, scale, limit, order, gradient, blocks):
     return total
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def edge_pairs(x, ends, weight, scale, limit, order, gradient, blocks):
     """Energy of vertices before the inside of edges; add their forces, write their (6, 6) matrices.
 
@@ -153,7 +153,7 @@ def edge_pairs(x, ends, weight, scale, limit, order, gradient, blocks):
     return total
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def free_step(start, end, edges, pairs, gap):
     """Fraction of the straight path, at most 1, on which no pair comes nearer than a part of its distance.
 
@@ -169,7 +169,7 @@ def free_step(start, end, edges, pairs, gap):
     return step
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def pair_step(start, end, p, a, b, gap, longest):
     """Fraction of the path up to which a vertex and an edge are known not to meet, at most ``longest``."""
     mx = (end[p, 0] - start[p, 0] + end[a, 0] - start[a, 0] + end[b, 0] - start[b, 0]) / 3.0
@@ -188,9 +188,7 @@ def pair_step(start, end, p, a, b, gap, longest):
             return longest
         t += ADVANCE * (distance - nearest_allowed) / speed
         distance = np.sqrt(
-            nearest(
-                px + t * upx, py + t * upy, ax + t * uax, ay + t * uay, bx + t * ubx, by + t * uby
-            )[0]
+            nearest(px + t * upx, py + t * upy, ax + t * uax, ay + t * uay, bx + t * ubx, by + t * uby)[0]
         )
         if distance <= 2.0 * nearest_allowed:
             break

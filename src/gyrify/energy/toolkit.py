@@ -18,7 +18,9 @@ class ToolkitContour:
 
     def __init__(self, reference: FloatArray, edges: IntArray, n_own: int | None) -> None:
         self.n_own = n_own
-        self.mesh = ipctk.CollisionMesh(np.asfortranarray(reference), np.asfortranarray(edges.astype(np.int32)))
+        self.mesh = ipctk.CollisionMesh(
+            np.asfortranarray(reference), np.asfortranarray(edges.astype(np.int32))
+        )
         if n_own is not None:
             # Images do not meet each other.
             self.mesh.can_collide = ipctk.make_static_obstacle_filter(n_own)

@@ -226,6 +226,11 @@ class History(Views):
         return self.journal.meta("linear_solver", "unknown")
 
     @property
+    def contact_library(self) -> str:
+        """What computed contact: ``ipctk``, ``gyrify`` (kernels of its own), or ``none`` where it is off."""
+        return self.journal.meta("contact_library", "ipctk" if self.config.contact.enabled else "none")
+
+    @property
     def stable(self) -> bool | None:
         """Whether the last state keeps its folds once growth stops; None while unknown.
 
