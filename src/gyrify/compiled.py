@@ -60,7 +60,7 @@ def _avoid_a_home_that_is_none() -> None:
 
 
 def _keep_elsewhere() -> bool:
-    """Have numba keep what it compiles in the temporary folder, here and in processes that this one begins."""
+    """Have numba keep what it compiles in the temporary folder, here and in processes begun from here."""
     folder = scratch_folder()
     if folder is None or str(folder) == numba.config.CACHE_DIR:  # not even there
         _tell("nothing compiled can be kept, and every process compiles anew (up to a minute)")

@@ -112,8 +112,8 @@ class Run:
             self.journal.set_meta(status="completed", **self._last_state(watch))
         except LimitReachedError as limit:
             self.journal.set_meta(status="stopped", reason=limit.message, advice=limit.advice)
-        except KeyboardInterrupt:
-            self._record("interrupted", "It was interrupted by the user.", "Continue with `gyrify resume`.")
+        except KeyboardInterrupt as interrupt:
+            self._record("interrupted", _ended_by(interrupt), "Continue with `gyrify resume`.")
             raise
         except GyrifyError as failure:
             self._record("failed", failure.message, failure.advice)
@@ -235,3 +235,9 @@ class Run:
 
 def _word(value: bool) -> str:
     return "true" if value else "false"
+
+
+def _ended_by(interrupt: KeyboardInterrupt) -> str:
+    """Who ended a run; an interrupt holds the name of the signal where it was not Ctrl-C."""
+    name = str(interrupt)
+    return f"The signal {name} ended it." if name not in ("", "SIGINT") else "It was interrupted by the user."

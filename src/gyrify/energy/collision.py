@@ -1,4 +1,4 @@
-"""What the contact energy asks of a library that searches pairs and follows paths, and which ones there are."""
+"""What the contact energy asks of a library that finds pairs and follows paths; and which ones there are."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ def meeting_boxes(low, high, edges, n_own, order, pairs):
             e = order[k]
             a, b = edges[e, 0], edges[e, 1]
             k += 1
-            if v == a or v == b or (v >= n_own and a >= n_own and b >= n_own):
+            if v in (a, b) or (v >= n_own and a >= n_own and b >= n_own):
                 continue
             if max(high[a, 0], high[b, 0]) < low[v, 0]:
                 continue
