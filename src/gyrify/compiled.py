@@ -40,13 +40,14 @@ def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
 
     def decorate(function: Callable[..., Any]) -> Any:
         _avoid_a_home_that_is_none()
-        try:
-            return _guarded(numba.njit(**options)(function))
-        except RuntimeError as fault:
-            if _NO_FOLDER not in str(fault):
-                raise
-        if _keep_elsewhere():
-            return _guarded(numba.njit(**options)(function))
+        for _ in ("where numba keeps it", "elsewhere"):
+            try:
+                return _guarded(numba.njit(**options)(function))
+            except RuntimeError as fault:
+                if _NO_FOLDER not in str(fault):
+                    raise
+            if not _keep_elsewhere():
+                break
         return numba.njit(**{**options, "cache": False})(function)
 
     return decorate

@@ -103,8 +103,13 @@ def check(end: Interrupted, folder: Path) -> None:
 
 @pytest.mark.parametrize(
     "signals",
-    [(signal.SIGTERM,), (signal.SIGINT, signal.SIGINT), (signal.SIGUSR1,), (signal.SIGUSR2, signal.SIGTERM)]
-    + [(signal.SIGXCPU,)],
+    [
+        (signal.SIGTERM,),
+        (signal.SIGINT, signal.SIGINT),
+        (signal.SIGUSR1,),
+        (signal.SIGUSR2, signal.SIGTERM),
+        (signal.SIGXCPU,),
+    ],
     ids=["term", "int-twice", "usr1", "usr2-and-term", "xcpu"],
 )
 def test_interrupt_in_the_midst_of_growth(
