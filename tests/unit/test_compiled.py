@@ -50,23 +50,42 @@ def answer(process: subprocess.Popen[str]) -> tuple[str, str]:
 
 
 def test_processes_that_begin_at_once_never_get_each_others_code(kernels: Path) -> None:
-    """Each looks at the cache, finds it empty, and stores; slowly here, so that they surely meet."""
-    slow = """
-        import sys, time
+    """Both find the cache empty and number what they store; the later index meets the earlier one's code.
+
+    They wait for one another by files: the number is chosen by both; one writes its index, the other its
+    index and its code, and then the first its code.
+    """
+    meeting = """
+        import pathlib, time
         import numba.core.caching as caching
-        save = caching.IndexDataCacheFile._save_index
-        def late(self, overloads):
-            time.sleep({first})
-            save(self, overloads)
-            time.sleep({then})
-        caching.IndexDataCacheFile._save_index = late
+        file = caching.IndexDataCacheFile
+        save_index, save_data = file._save_index, file._save_data
+        here = pathlib.Path({folder!r})
+        def reach(place):
+            (here / place).touch()
+        def wait_for(place):
+            while not (here / place).exists():
+                time.sleep(0.01)
+        def index(self, overloads):
+            reach("{me} has chosen")
+            wait_for("{other} has chosen")
+            if {is_later}:
+                wait_for("{other} has an index")
+            save_index(self, overloads)
+            reach("{me} has an index")
+        def data(self, *arguments):
+            if not {is_later}:
+                wait_for("{other} is done")
+            save_data(self, *arguments)
+            reach("{me} is done")
+        file._save_index, file._save_data = index, data
         import kernels
-        kernels.kernel(1)(1)
-        print(kernels.kernel({n})(100))
+        print(kernels.kernel({me})(100))
     """
     cache = str(kernels / "cache")
-    first = begin(kernels, slow.format(first=3, then=0, n=10), NUMBA_CACHE_DIR=cache)
-    second = begin(kernels, slow.format(first=0, then=6, n=20), NUMBA_CACHE_DIR=cache)
+    given = {"folder": str(kernels)}
+    first = begin(kernels, meeting.format(me=10, other=20, is_later=False, **given), NUMBA_CACHE_DIR=cache)
+    second = begin(kernels, meeting.format(me=20, other=10, is_later=True, **given), NUMBA_CACHE_DIR=cache)
     assert [answer(process)[0] for process in (first, second)] == ["110", "120"]
     again = "import kernels; print([kernels.kernel(n)(100) for n in (1, 10, 20)])"
     crowd = [begin(kernels, again, NUMBA_CACHE_DIR=cache) for _ in range(4)]
