@@ -234,11 +234,9 @@ class History(Views):
     def stable(self) -> bool | None:
         """Whether the last state keeps its folds once growth stops; None while unknown.
 
-        Without dissipation: whether it is a stable equilibrium. With it: whether the state that it relaxes to
-        has the same folds (`relaxed`).
+        It is a stable equilibrium or, with dissipation, relaxes to one with the same folds (`relaxed`).
         """
-        known = self.journal.meta("stable")
-        return known == "true" if known else None
+        return {"true": True, "false": False}.get(self.journal.meta("stable"))
 
     @property
     def onset(self) -> Onset | None:
