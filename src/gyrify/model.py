@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from gyrify.config import Config
+from gyrify.energy.collision import LibraryName
 from gyrify.energy.contact import ContactEnergy, ContactSurface
 from gyrify.energy.kinematics import ElasticKinematics
 from gyrify.energy.term import EnergyTerm, FloatArray, IntArray
@@ -45,11 +46,24 @@ class Slice(Tissue):
         Every number of the run.
     mesh : Mesh, optional
         Mesh to use instead of the configured one.
+
+    Attributes
+    ----------
+    contact_library : str
+        What searches pairs and follows paths; see `gyrify.energy.collision.contact_library`.
     """
+
+    contact_library: LibraryName = "auto"
+
+    def use_contact_library(self, name: LibraryName) -> None:
+        """Have contact computed by another library."""
+        self.contact_library = name
+        self.__dict__.pop("surface", None)
 
     def varied(self, config: Config) -> Slice:
         """Slice of another configuration on the same mesh; what depends on the mesh alone is shared."""
         other = Slice(config, self.mesh)
+        other.contact_library = self.contact_library
         shared = (
             "simplices",
             "pattern",
@@ -66,7 +80,8 @@ class Slice(Tissue):
     @cached_property
     def surface(self) -> ContactSurface:
         """Outer contour, for contact."""
-        return ContactSurface(self.mesh.points, self.mesh.contour, self.mesh.is_closed, self.mesh.period)
+        mesh = self.mesh
+        return ContactSurface(mesh.points, mesh.contour, mesh.is_closed, mesh.period, self.contact_library)
 
     @cached_property
     def free_mass(self) -> FloatArray:

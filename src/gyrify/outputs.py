@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
-
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING, Any
 
 from gyrify.arguments import Pathlike, as_path
 from gyrify.errors import HistoryError
@@ -19,6 +17,9 @@ from gyrify.store.history import History
 from gyrify.store.vtkhdf import write_vtkhdf
 from gyrify.summary import summarise, write_metrics, write_summary
 from gyrify.validity.converged import mark
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def write_outputs(history: History, folder: Pathlike) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from multiprocessing.synchronize import Event
 from typing import Final, Self, TypeVar
 
 from gyrify.errors import GyrifyError
+from gyrify.signals import ending_signals
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -25,6 +26,7 @@ Work = Callable[[Item, Watcher], Result]
 MAX_WORKERS: Final = 256
 _ONE_THREAD: Final = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
 _stop: Event | None = None
+_is_asked_to_end = False
 
 
 def go_on() -> None:
@@ -98,7 +100,8 @@ class _Crew:
     def __init__(self, size: int) -> None:
         self.size = size
         context = multiprocessing.get_context("spawn")
-        self._stop, self._begun = context.Event(), context.Event()
+        with deaf_children():  # Python begins a process that looks after these
+            self._stop, self._begun = context.Event(), context.Event()
         self._pool = ProcessPoolExecutor(size, context, _begin_worker, (self._stop, self._begun))
 
     def __enter__(self) -> Self:
@@ -111,7 +114,7 @@ class _Crew:
     def submit(self, work: Work[Item, Result], item: Item) -> Future[Result]:
         """Let the next idle process work on an item; it begins processes while there are too few."""
         try:
-            with _one_thread(), _deaf_children():
+            with _one_thread(), deaf_children():
                 return self._pool.submit(_work, work, item)
         except BrokenProcessPool as broken:  # known only now; it is to be met where results are
             future: Future[Result] = Future()
@@ -138,17 +141,24 @@ def _work(work: Work[Item, Result], item: Item) -> Result:
 
 
 def _look() -> None:
-    if _stop is not None and _stop.is_set():
+    if _is_asked_to_end or (_stop is not None and _stop.is_set()):
         raise KeyboardInterrupt
 
 
 def _begin_worker(stop: Event, begun: Event) -> None:
-    """Leave Ctrl-C to the parent, and end with it whatever becomes of it."""
+    """Leave Ctrl-C to the parent, and end with it whatever becomes of it.
+
+    Queues send their signals to every process of a job: work then ends at a safe place, and the parent with
+    it. SIGTERM ends a process at once, because that is how a broken pool is taken down.
+    """
     global _stop
     _stop = stop
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for number in ending_signals("SIGINT", "SIGTERM"):
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, _note)
     if hasattr(signal, "pthread_sigmask"):
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, ending_signals())
     parent = multiprocessing.parent_process()
     if parent is not None:
         sentinel = parent.sentinel
@@ -156,13 +166,18 @@ def _begin_worker(stop: Event, begun: Event) -> None:
     begun.set()
 
 
+def _note(*_: object) -> None:
+    global _is_asked_to_end
+    _is_asked_to_end = True
+
+
 @contextmanager
-def _deaf_children() -> Iterator[None]:
-    """Hold Ctrl-C back while processes begin: they inherit that, and lay it down once they ignore it."""
+def deaf_children() -> Iterator[None]:
+    """Hold signals back while processes begin: they inherit that, and lay it down once they are prepared."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ending_signals())
     try:
         yield
     finally:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 
+from gyrify.energy.collision import OWN, contact_library
 from gyrify.errors import GyrifyError, HistoryError, LimitReachedError, SolveError
 from gyrify.limits import Watch
 from gyrify.model import Slice
@@ -103,6 +104,7 @@ class Run:
             stable="",
             relaxed="",
             linear_solver=self._linear_solver(),
+            contact_library=self._contact_library(),
         )
         try:
             self.problem.compile()  # memory may run out even here
@@ -110,8 +112,8 @@ class Run:
             self.journal.set_meta(status="completed", **self._last_state(watch))
         except LimitReachedError as limit:
             self.journal.set_meta(status="stopped", reason=limit.message, advice=limit.advice)
-        except KeyboardInterrupt:
-            self._record("interrupted", "It was interrupted by the user.", "Continue with `gyrify resume`.")
+        except KeyboardInterrupt as interrupt:
+            self._record("interrupted", _ended_by(interrupt), "Continue with `gyrify resume`.")
             raise
         except GyrifyError as failure:
             self._record("failed", failure.message, failure.advice)
@@ -150,14 +152,43 @@ class Run:
         begun_with = self.journal.meta("linear_solver", solver)
         if begun_with == solver:
             return solver
-        last = self.journal.state(len(self.journal) - 1)
-        if 0 < last.position < self.problem.stepping.end:
+        if self._is_under_way:
             raise HistoryError(
                 f"The run was begun with {begun_with}, but solver.linear_solver is now {solver}: "
                 "continued, it would not end with the same result.",
                 f"Resume where {begun_with} is installed, or run again.",
             )
-        return begun_with if last.position > 0 else solver
+        return begun_with if self._last_position > 0 else solver
+
+    def _contact_library(self) -> str:
+        """Library that computes contact; the one that the run began with, or its end would be another.
+
+        Runs of versions without a record of it had ipctk.
+        """
+        if not self.problem.config.contact.enabled:
+            return "none"
+        library = contact_library()
+        begun_with = self.journal.meta("contact_library", "ipctk" if self._last_position > 0 else library)
+        if begun_with == OWN and self._last_position > 0:
+            self.problem.use_contact_library(OWN)
+            return OWN
+        if begun_with != library and self._is_under_way:
+            raise HistoryError(
+                "The run was begun with contact by ipctk, which is not installed here: continued without it, "
+                "the run would not end with the same result.",
+                "Resume where ipctk is installed (pip install ipctk), or run again.",
+            )
+        return library if self._last_position == 0 else begun_with
+
+    @property
+    def _last_position(self) -> int:
+        """Growth time of the last stored state, in ticks."""
+        return self.journal.state(len(self.journal) - 1).position
+
+    @property
+    def _is_under_way(self) -> bool:
+        """Whether the run has begun to grow, and is not at its end."""
+        return 0 < self._last_position < self.problem.stepping.end
 
     def _accept(self, observers: tuple[Observer, ...], watch: Watcher) -> None:
         """Store and tell every increment that the solver accepts."""
@@ -204,3 +235,9 @@ class Run:
 
 def _word(value: bool) -> str:
     return "true" if value else "false"
+
+
+def _ended_by(interrupt: KeyboardInterrupt) -> str:
+    """Who ended a run; an interrupt holds the name of the signal where it was not Ctrl-C."""
+    name = str(interrupt)
+    return f"The signal {name} ended it." if name not in ("", "SIGINT") else "It was interrupted by the user."

@@ -111,6 +111,7 @@ def _summary(history: History, measures: Measures) -> dict[str, Any]:
                 "residual": float(history.residuals[-1]),
                 "tolerance": history.slice.stepping.criterion.force,
                 "linear_solver": history.linear_solver,
+                "contact_library": history.contact_library,
                 "wall_s": history.wall_s,
             },
             "versions": history.versions,

@@ -16,8 +16,8 @@ SOURCE = Path(gyrify.__file__).parent
 
 # Each layer may import from the layers above it in this list, and from its own package.
 LAYERS = [
-    {"errors", "versions", "markup"},
-    {"arguments"},
+    {"errors", "versions", "markup", "scratch"},
+    {"arguments", "compiled"},
     {"config", "physics", "mesh", "theory", "limits"},
     {"energy", "metrics"},
     {"solve", "meshing", "phenotype"},
@@ -27,10 +27,10 @@ LAYERS = [
 # What kernels and readers may know, more strictly than by their layer.
 MAY_IMPORT = {
     "config": {"arguments", "errors"},
-    "physics": {"errors"},
+    "physics": {"compiled", "errors"},
     "mesh": {"errors"},
     "theory": {"errors"},
-    "energy": {"physics", "errors"},
+    "energy": {"compiled", "physics", "errors"},
     "solve": {"energy", "physics", "mesh", "errors"},
     "metrics": {"arguments", "mesh", "errors", "markup"},
     "phenotype": {"metrics", "config", "errors"},
@@ -38,6 +38,7 @@ MAY_IMPORT = {
 # Imports inside functions: (importer, imported), and why. Anything else is written at the top of its file.
 LAZY = {
     ("config", "config"): "the HTML table is for notebooks only",
+    ("energy", "energy"): "ipctk may be missing",
     ("solve", "solve"): "PARDISO may be missing",
     ("store", "notebook"): "pictures are for notebooks only",
     ("store", "store"): "h5py is loaded when it is needed",

@@ -96,15 +96,21 @@ def check(end: Interrupted, folder: Path) -> None:
         assert json.loads((folder / "summary.json").read_text())["status"] == "completed"
         return
     # Before the command line is loaded, SIGTERM has its usual effect.
-    assert end.code == 130 or (end.code == -signal.SIGTERM and not folder.exists()), end
+    assert end.code == 130 or (end.code in (-signal.SIGTERM, -signal.SIGUSR1) and not folder.exists()), end
     if (folder / "journal.sqlite").exists():
         assert re.search(rf"gyrify resume {re.escape(str(folder))}$", end.stderr, re.MULTILINE), end
 
 
 @pytest.mark.parametrize(
     "signals",
-    [(signal.SIGTERM,), (signal.SIGINT, signal.SIGINT)],
-    ids=["term", "int-twice"],
+    [
+        (signal.SIGTERM,),
+        (signal.SIGINT, signal.SIGINT),
+        (signal.SIGUSR1,),
+        (signal.SIGUSR2, signal.SIGTERM),
+        (signal.SIGXCPU,),
+    ],
+    ids=["term", "int-twice", "usr1", "usr2-and-term", "xcpu"],
 )
 def test_interrupt_in_the_midst_of_growth(
     long: Config, expected: str, tmp_path: Path, signals: tuple[int, ...], capsys: pytest.CaptureFixture[str]
@@ -117,6 +123,7 @@ def test_interrupt_in_the_midst_of_growth(
     document = json.loads(end.stdout)
     assert document == json.loads((folder / "summary.json").read_text())
     assert document["status"] == History.load(folder).status == "interrupted"
+    assert signals[0] == signal.SIGINT or f"The signal {signals[0].name} ended it." in document["reason"]
     assert 10 < len(History.load(folder)) < 300
     assert not (folder / "run.owner.json").exists()
     capsys.readouterr()
@@ -125,11 +132,30 @@ def test_interrupt_in_the_midst_of_growth(
     assert (resumed["status"], resumed["result_hash"]) == ("completed", expected)
 
 
-@pytest.mark.parametrize("moment", [0.15, 0.5, 1.0])
-def test_interrupt_while_starting(long: Config, tmp_path: Path, moment: float) -> None:
+@pytest.mark.parametrize(
+    ("moment", "number"),
+    [(0.15, signal.SIGINT), (0.5, signal.SIGINT), (1.0, signal.SIGINT), (1.0, signal.SIGUSR1)],
+)
+def test_interrupt_while_starting(long: Config, tmp_path: Path, moment: float, number: int) -> None:
     process = start(long, tmp_path / "run")
     time.sleep(moment)
-    check(interrupt(process, signal.SIGINT), tmp_path / "run")
+    check(interrupt(process, number), tmp_path / "run")
+
+
+def test_a_command_that_stores_nothing_ends_cleanly_too(tmp_path: Path) -> None:
+    """`gyrify threshold` at a signal of a queue: the usual exit code and one JSON document."""
+    command = [sys.executable, "-m", "gyrify.cli", "threshold", "--json", "--set", "mesh.n_around=600"]
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=tmp_path
+    )
+    until = time.monotonic() + 60.0
+    mapped = Path(f"/proc/{process.pid}/maps")
+    while mapped.exists() and "llvmlite" not in mapped.read_text() and time.monotonic() < until:
+        time.sleep(0.05)
+    end = interrupt(process, signal.SIGUSR1)
+    assert end.code == 130, end
+    assert json.loads(end.stdout)["error"] == "Interrupted"
+    assert "Traceback" not in end.stderr
 
 
 @pytest.mark.slow
@@ -172,7 +198,8 @@ def test_interrupt_at_random_moments(long: Config, expected: str, tmp_path: Path
     if process.poll() is not None:
         process.communicate()
         pytest.skip("the run was done")
-    signals = [chance.choice([signal.SIGINT, signal.SIGTERM]) for _ in range(chance.choice([1, 1, 2, 3]))]
+    known = [signal.SIGINT, signal.SIGTERM, signal.SIGUSR1]
+    signals = [chance.choice(known) for _ in range(chance.choice([1, 1, 2, 3]))]
     end = interrupt(process, *signals, pause=chance.uniform(0.0, 0.3))
     print(f"latency {end.latency:.2f} s")
     check(end, folder)

@@ -39,7 +39,8 @@ def finished(out: Path) -> list[Path]:
 
 @pytest.mark.parametrize(
     "number",
-    [signal.SIGINT, signal.SIGKILL, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)],
+    [signal.SIGINT, signal.SIGKILL, signal.SIGUSR1]
+    + [pytest.param(number, marks=pytest.mark.slow) for number in (signal.SIGTERM, signal.SIGUSR2)],
     ids=lambda number: number.name,
 )
 def test_a_signal_ends_it_and_the_same_call_continues(

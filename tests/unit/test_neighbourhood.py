@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ipctk
 import numpy as np
 import pytest
 from bodies import pinched_contact
@@ -35,13 +34,13 @@ def test_the_way_to_a_collision_is_as_long_as_for_a_new_search(rng: np.random.Ge
     known, u, _ = pinched_contact()
     surface, blocked = known.surface, 0
     shortest = surface.shortest_edge(u)
-    near = Neighbourhood(surface.mesh, known.d_hat, shortest)
+    near = Neighbourhood(surface.collisions, known.d_hat, shortest)
     start = surface.vertices(u)
     near.pairs(start)
     for _ in range(40):
         end = np.asfortranarray(start + rng.uniform(-shortest, shortest, start.shape))
         assert near.holds(end)
-        step = ipctk.compute_collision_free_stepsize(surface.mesh, start, end)
+        step = surface.collisions.free_step(start, end)
         assert near.collision_free_step(start, end) == pytest.approx(step, rel=1e-12)
         blocked += step < 1.0
     assert blocked > 10
@@ -49,7 +48,7 @@ def test_the_way_to_a_collision_is_as_long_as_for_a_new_search(rng: np.random.Ge
 
 def test_pairs_are_searched_anew_outside_of_the_squares() -> None:
     known, u, _ = pinched_contact()
-    near = Neighbourhood(known.surface.mesh, known.d_hat, 0.1)
+    near = Neighbourhood(known.surface.collisions, known.d_hat, 0.1)
     start = known.surface.vertices(u)
     assert not near.holds(start)
     near.pairs(start)

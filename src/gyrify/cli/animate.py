@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from types import FrameType
 from typing import Literal
 
 from gyrify.cli.options import number
@@ -58,27 +56,13 @@ def animate(
     chosen = {name: number(f"--{name}", text) for name, text in given.items() if text is not None}
     name = "growth.gif" if field == "tissue" else f"growth-{field}.gif"
     target = out if out is not None else run_folder / name
-    with _interruptible(), _progress(quiet) as observe:
+    with _progress(quiet) as observe:
         write(run_folder, target, field=field, width=width, observe=observe, **chosen)
     size = target.stat().st_size
     if json:
         print_json({"files": [str(target)], "bytes": size})
     else:
         say(f"{target} ({size / 1e6:.1f} MB)")
-
-
-@contextmanager
-def _interruptible() -> Iterator[None]:
-    """Have a request to terminate end like Ctrl-C, so that no half of a file is left."""
-
-    def interrupt(number: int, frame: FrameType | None) -> None:  # noqa: ARG001
-        raise KeyboardInterrupt
-
-    previous = signal.signal(signal.SIGTERM, interrupt)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, previous)
 
 
 @contextmanager

@@ -20,6 +20,8 @@ from gyrify.cli.animate import animate
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, USAGE
 from gyrify.cli.converge import converge
 from gyrify.cli.early import ignore_interrupts
+from gyrify.cli.environment import restore_docstrings, tidy_environment
+from gyrify.cli.interrupts import ends_are_interrupts
 from gyrify.cli.overrides import STANDARD_INPUT
 from gyrify.cli.paper import paper
 from gyrify.cli.plot import plot
@@ -30,6 +32,9 @@ from gyrify.cli.study import study
 from gyrify.cli.table import table
 from gyrify.cli.threshold import threshold
 from gyrify.errors import ConfigError, GyrifyError, HistoryError, MeshError
+
+for _name in [name for name in sys.modules if name.startswith("gyrify.cli.")]:
+    restore_docstrings(sys.modules[_name])
 
 app = App(
     name="gyrify",
@@ -68,10 +73,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         0 completed, 1 failed, 2 usage or configuration, 3 stopped by a limit, 130 interrupted.
     """
+    if arguments is None:
+        tidy_environment()
     given = sys.argv[1:] if arguments is None else arguments
     tokens = [str(STANDARD_INPUT) if token == "-" else token for token in given]
     try:
-        code = app(tokens, exit_on_error=False, print_error=False)
+        with ends_are_interrupts():
+            code = app(tokens, exit_on_error=False, print_error=False)
         sys.stdout.flush()
         return code if isinstance(code, int) else COMPLETED
     except CycloptsError as error:
@@ -80,6 +88,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _report(error, tokens)
     except KeyboardInterrupt:
         complain("Interrupted.")
+        if "--json" in tokens:
+            print_json({"error": "Interrupted", "message": "Interrupted.", "advice": "Run it again."})
         return INTERRUPTED
     except MemoryError:
         return _report(GyrifyError("Memory ran out.", "Use a smaller mesh, or fewer workers."), tokens)

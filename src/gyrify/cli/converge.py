@@ -75,7 +75,10 @@ def converge(
             resolved, folder, levels=levels, of=subjects, workers=processes, tolerance=largest, tell=tell
         )
     except KeyboardInterrupt:
-        complain("Interrupted. Every accepted increment is stored: run the same command again to continue.")
+        said, advice = "Every accepted increment is stored.", "Run the same command again to continue."
+        complain(f"Interrupted. {said} {advice}")
+        if json:
+            print_json({"error": "Interrupted", "message": said, "advice": advice})
         return INTERRUPTED
     from gyrify.report.convergence import write_pictures
 

@@ -1,4 +1,4 @@
-"""Ctrl-C while the command line is still loading, or already closing down: no traceback."""
+"""A request to end while the command line is still loading, or already closing down: no traceback."""
 
 from __future__ import annotations
 
@@ -9,24 +9,27 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from gyrify.cli.codes import INTERRUPTED
+from gyrify.signals import ending_signals
 
 
 @contextmanager
 def quiet_interrupts() -> Iterator[None]:
-    """End the process at Ctrl-C, with its exit code and nothing else, inside a ``with`` block."""
+    """End the process at Ctrl-C and the like, with their exit code and nothing else, in a ``with`` block."""
     is_main = threading.current_thread() is threading.main_thread()
-    if not is_main or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
-        yield
-        return
-    signal.signal(signal.SIGINT, lambda *_: os._exit(INTERRUPTED))
+    usual = (signal.SIG_DFL, signal.default_int_handler)
+    # A signal that is ignored (nohup), or that the program around this one handles, stays as it is.
+    before = {n: signal.getsignal(n) for n in ending_signals() if is_main and signal.getsignal(n) in usual}
+    for number in before:
+        signal.signal(number, lambda *_: os._exit(INTERRUPTED))
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def ignore_interrupts() -> None:
-    """Let Ctrl-C and SIGTERM do nothing from here on."""
+    """Let Ctrl-C and all that asks to end do nothing from here on."""
     if threading.current_thread() is threading.main_thread():
-        for number in (signal.SIGINT, signal.SIGTERM):
+        for number in ending_signals():
             signal.signal(number, signal.SIG_IGN)

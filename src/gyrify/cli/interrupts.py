@@ -1,4 +1,4 @@
-"""Ctrl-C, SIGTERM and a closed terminal during a run: it ends at a safe place, and soon.
+"""Ctrl-C, SIGTERM, a closed terminal or a queue's warning during a run: it ends at a safe place, and soon.
 
 A signal is noted, and the run looks for it at each Newton iteration, so that it never strikes inside a
 transaction. Where that place is not reached in time (a library compiles, loads or factorises), or there is
@@ -20,11 +20,11 @@ from types import FrameType, TracebackType
 from typing import Final, Self
 
 from gyrify.cli.codes import INTERRUPTED
+from gyrify.signals import ending_signals
 
 # Seconds that a run gets to reach a safe place and save; and that a start gets to leave foreign code.
 GRACE: Final = 1.2
 START_GRACE: Final = 0.2
-_NAMES: Final = ("SIGINT", "SIGTERM", "SIGHUP")
 
 
 class Interrupts:
@@ -42,7 +42,7 @@ class Interrupts:
     """
 
     def __init__(self, as_json: bool = False) -> None:
-        self.requested = False
+        self.requested, self._name = False, ""
         self._json, self._is_told = as_json, False
         self._folder: Path | None = None
         self._over, self._ending = threading.Event(), threading.Lock()
@@ -56,7 +56,7 @@ class Interrupts:
         writer.setblocking(False)
         signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
         threading.Thread(target=self._await_signal, args=(reader,), daemon=True).start()
-        for number in (getattr(signal, name) for name in _NAMES if hasattr(signal, name)):
+        for number in ending_signals():
             # A signal that is ignored (nohup, a job in the background) stays ignored.
             if (previous := signal.getsignal(number)) is not signal.SIG_IGN:
                 self._previous[number] = previous
@@ -89,10 +89,11 @@ class Interrupts:
         """
         if self.requested and not self._is_told:
             self._is_told = True
-            raise KeyboardInterrupt
+            raise KeyboardInterrupt(self._name)
 
     def _note(self, number: int, frame: FrameType | None) -> None:  # noqa: ARG002
-        self.requested = True
+        if not self.requested:
+            self.requested, self._name = True, signal.Signals(number).name
         if self._folder is None:
             self._end()
 
@@ -135,15 +136,19 @@ def _write(descriptor: int, text: str) -> None:
 
 @contextlib.contextmanager
 def ends_are_interrupts() -> Iterator[None]:
-    """Let SIGTERM and a closed terminal do what Ctrl-C does, inside a ``with`` block of the main thread."""
-    numbers = [getattr(signal, name) for name in _NAMES[1:] if hasattr(signal, name)]
+    """Let every signal that asks to end do what Ctrl-C does, inside a ``with`` block of the main thread."""
+    numbers = ending_signals("SIGINT")
     is_main = threading.current_thread() is threading.main_thread()
     # A signal that is ignored (nohup) stays ignored.
     before = {n: signal.getsignal(n) for n in numbers if is_main and signal.getsignal(n) != signal.SIG_IGN}
     for number in before:
-        signal.signal(number, signal.default_int_handler)
+        signal.signal(number, _interrupt)
     try:
         yield
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:  # noqa: ARG001
+    raise KeyboardInterrupt(signal.Signals(number).name)

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, STOPPED
-from gyrify.cli.interrupts import ends_are_interrupts
 from gyrify.cli.options import cores
 from gyrify.cli.streams import complain, print_json, say, warn
 
@@ -80,7 +79,7 @@ def paper(
     _require(processes, minutes)
     seen = progress_of_points(quiet or readings)
     try:
-        with ends_are_interrupts(), seen as observer, Bench(out, processes, observer) as bench:
+        with seen as observer, Bench(out, processes, observer) as bench:
             if readings:
                 return _readings(bench, base, begun, minutes, seed, json, quiet)
             return _one(bench, base, reading, begun, seed, json)

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED, STOPPED
-from gyrify.cli.interrupts import ends_are_interrupts
 from gyrify.cli.options import cores
 from gyrify.cli.overrides import STANDARD_INPUT
 from gyrify.cli.streams import complain, print_json, say, warn
@@ -61,17 +60,16 @@ def study(
     folder = Path("studies") / file.stem if out is None else out
     processes = cores(workers)
     try:
-        with ends_are_interrupts():
-            with progress_of_points(quiet) as observer:
-                result = run_study(
-                    described,
-                    folder,
-                    workers=processes,
-                    scheduler=scheduler,
-                    retry_failed=retry_failed,
-                    observer=observer,
-                )
-            pictures = _draw(folder)
+        with progress_of_points(quiet) as observer:
+            result = run_study(
+                described,
+                folder,
+                workers=processes,
+                scheduler=scheduler,
+                retry_failed=retry_failed,
+                observer=observer,
+            )
+        pictures = _draw(folder)
     except KeyboardInterrupt:
         said, advice = "Every finished run is stored.", "Run the same command again to continue."
         complain(f"Interrupted. {said} {advice}")

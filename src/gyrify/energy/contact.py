@@ -13,16 +13,12 @@ from __future__ import annotations
 
 from functools import cached_property
 
-import ipctk
 import numpy as np
 
-from gyrify.energy.images import Polyline, share_pairs
+from gyrify.energy.collision import LibraryName, collision_contour
+from gyrify.energy.images import Polyline
 from gyrify.energy.neighbourhood import Neighbourhood
 from gyrify.energy.term import Evaluation, FloatArray, Hessian, IntArray, Pattern
-
-# ipctk sums over threads; one thread makes the sum, and so the run, reproducible.
-ipctk.set_num_threads(1)
-ipctk.set_logger_level(ipctk.LoggerLevel.error)
 
 # Steps stop short of contact, so that the barrier stays finite.
 SAFETY = 0.9
@@ -42,9 +38,13 @@ class ContactSurface:
     period : float, optional
         Period in x [mm]: the last point joins the first one period further, and the contour meets its
         images on both sides.
+    library : str
+        What searches pairs and follows paths; see `gyrify.energy.collision.contact_library`.
 
     Attributes
     ----------
+    collisions : CollisionContour
+        The contour as the library sees it.
     source : (n_vertices,) int array
         Point of the whole mesh that each vertex of the collision mesh moves with.
     is_periodic : bool
@@ -52,26 +52,29 @@ class ContactSurface:
     """
 
     def __init__(
-        self, points: FloatArray, contour: IntArray, is_closed: bool = True, period: float | None = None
+        self,
+        points: FloatArray,
+        contour: IntArray,
+        is_closed: bool = True,
+        period: float | None = None,
+        library: LibraryName = "auto",
     ) -> None:
         line = Polyline.of(contour.size, is_closed, period)
         self.contour, self.source = contour, contour[line.vertices]
         self.n_points = points.shape[0]
         self.is_periodic = period is not None
-        self.edges = np.asfortranarray(line.edges.astype(np.int32))
+        self.edges = line.edges
         self.reference = np.asfortranarray(points[self.source] + line.offset)
-        self.mesh = ipctk.CollisionMesh(self.reference, self.edges)
-        if self.is_periodic:
-            # Images do not meet each other.
-            self.mesh.can_collide = ipctk.make_static_obstacle_filter(contour.size)
+        n_own = contour.size if self.is_periodic else None
+        self.collisions = collision_contour(self.reference, line, n_own, library)
 
     def vertices(self, u: FloatArray) -> FloatArray:
-        """(n_vertices, 2) deformed vertices [mm] in the Fortran order that ipctk wants."""
+        """(n_vertices, 2) deformed vertices [mm], in Fortran order."""
         return np.asfortranarray(self.reference + u[self.source])
 
     def is_path_collision_free(self, u: FloatArray, u_end: FloatArray) -> bool:
         """Whether the straight path between two states is free of crossings."""
-        return bool(ipctk.is_step_collision_free(self.mesh, self.vertices(u), self.vertices(u_end)))
+        return self.collisions.is_path_free(self.vertices(u), self.vertices(u_end))
 
     def shortest_edge(self, u: FloatArray) -> float:
         """Length of the shortest deformed edge [mm]."""
@@ -80,10 +83,7 @@ class ContactSurface:
 
     def couplings(self, u: FloatArray, distance: float) -> IntArray:
         """(n_pairs, 2) point indices of vertices and edge ends closer than a distance [mm]."""
-        candidates = ipctk.Candidates()
-        candidates.build(self.mesh, self.vertices(u), distance)
-        found = [(c.vertex_id, c.edge_id) for c in candidates.ev_candidates]
-        pairs = np.array(found, dtype=np.int64).reshape(-1, 2)
+        pairs = self.collisions.pair_array(self.collisions.pairs(self.vertices(u), distance))
         ends = self.edges[pairs[:, 1]]
         vertices = np.repeat(pairs[:, :1], 2, axis=1)
         both = self.source[np.stack([vertices.ravel(), ends.ravel()], axis=1)]
@@ -113,33 +113,22 @@ class ContactEnergy:
     ) -> None:
         self.surface = surface
         self.d_hat = d_hat
-        self._near = Neighbourhood(surface.mesh, d_hat, d_hat if reach is None else reach)
-        self._barrier = ipctk.BarrierPotential(d_hat, barrier_stiffness, True)
-
-    def _collisions(self, vertices: FloatArray) -> ipctk.NormalCollisions:
-        collisions = ipctk.NormalCollisions()
-        collisions.use_area_weighting = True
-        collisions.collision_set_type = ipctk.NormalCollisions.IMPROVED_MAX_APPROX
-        collisions.build(self._near.pairs(vertices), self.surface.mesh, vertices, self.d_hat)
-        if self.surface.is_periodic:
-            share_pairs(collisions, self.surface.contour.size)
-        return collisions
+        self._near = Neighbourhood(surface.collisions, d_hat, d_hat if reach is None else reach)
+        self._barrier = surface.collisions.barrier(d_hat, barrier_stiffness)
 
     def evaluate(self, u: FloatArray, order: int, project_psd: bool = False) -> Evaluation:
         """Energy [Pa mm^2], gradient [Pa mm], Hessian [Pa]; see `EnergyTerm`."""
-        mesh, vertices = self.surface.mesh, self.surface.vertices(u)
-        collisions = self._collisions(vertices)
+        vertices = self.surface.vertices(u)
+        found = self._barrier.evaluate(self._near.pairs(vertices), vertices, order, project_psd)
         gradient = np.zeros_like(u) if order >= 1 else None
-        if len(collisions) == 0:
+        if found is None:
             return Evaluation(0.0, gradient, self._no_hessian if order >= 2 else None)
-        value = float(self._barrier(collisions, mesh, vertices))
-        if not np.isfinite(value):
+        if not np.isfinite(found.value):
             return Evaluation(np.inf)
-        if gradient is not None:
-            forces = self._barrier.gradient(collisions, mesh, vertices).reshape(-1, 2)
-            np.add.at(gradient, self.surface.source, forces)
-        hessian = self._hessian(collisions, vertices, project_psd) if order >= 2 else None
-        return Evaluation(value, gradient, hessian)
+        if gradient is not None and found.gradient is not None:
+            np.add.at(gradient, self.surface.source, found.gradient)
+        hessian = None if found.entries is None else self._hessian(*found.entries)
+        return Evaluation(found.value, gradient, hessian)
 
     def max_step(self, u: FloatArray, du: FloatArray) -> float:
         """Largest safe fraction of du, at most 1: the path up to it is free of crossings."""
@@ -147,13 +136,7 @@ class ContactEnergy:
         step = self._near.collision_free_step(start, np.asfortranarray(start + du[self.surface.source]))
         return 1.0 if step >= 1.0 else SAFETY * step
 
-    def _hessian(
-        self, collisions: ipctk.NormalCollisions, vertices: FloatArray, project_psd: bool
-    ) -> Hessian:
-        method = ipctk.PSDProjectionMethod.CLAMP if project_psd else ipctk.PSDProjectionMethod.NONE
-        matrix = self._barrier.hessian(collisions, self.surface.mesh, vertices, method).tocoo()
-        upper = matrix.row <= matrix.col
-        row, col, data = matrix.row[upper], matrix.col[upper], matrix.data[upper]
+    def _hessian(self, row: IntArray, col: IntArray, data: FloatArray) -> Hessian:
         rows, cols = self._dofs(row), self._dofs(col)
         pattern, position = Pattern.of(rows, cols)
         values = np.zeros(pattern.rows.size)

@@ -7,8 +7,8 @@ is w/2 (f_b (x) f_a + (g_a . g_b) F F^T) + (g_a . s_b) I.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from gyrify.compiled import njit
 from gyrify.energy.projection import project_to_psd
 
 # The functions below write into their last arguments; numba compiles them without annotations.

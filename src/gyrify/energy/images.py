@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import ipctk
 import numpy as np
 
 from gyrify.energy.term import FloatArray, IntArray
@@ -50,25 +49,3 @@ class Polyline:
             np.stack([period * periods, np.zeros(periods.size)], axis=1),
             np.stack([order[:-1], order[1:]], axis=1),
         )
-
-
-def share_pairs(collisions: ipctk.NormalCollisions, n_own: int) -> None:
-    """Weigh the pairs of a periodic contour so that each one, modulo the period, counts once.
-
-    A pair with an image is found twice, with the contour's own vertices on either side: a vertex and an edge
-    count where the vertex is the contour's own, two vertices by half for each of them that is.
-
-    Parameters
-    ----------
-    collisions : ipctk.NormalCollisions
-        Pairs with at least one vertex of the contour itself; their weights are changed.
-    n_own : int
-        Number of vertices of the contour itself, which come first.
-    """
-    vertex_pairs = [(pair.vertex0_id, pair.vertex1_id) for pair in collisions.vv_collisions]
-    vertices = [(pair.vertex_id, pair.vertex_id) for pair in collisions.ev_collisions]
-    ends = np.array(vertex_pairs + vertices).reshape(-1, 2)
-    share = np.mean(ends < n_own, axis=1)
-    # An element is a reference into the collisions and must not outlive them.
-    for number in np.flatnonzero(share < 1.0).tolist():
-        collisions[number].weight *= share[number]

@@ -9,8 +9,8 @@ from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 
+from gyrify.compiled import njit
 from gyrify.energy import cell, dashpot, lanes, projection, tangents
 from gyrify.energy.cell import deform, invert
 from gyrify.energy.dashpot import (

@@ -9,8 +9,8 @@ every term of `gyrify.physics.isotropic` becomes a product of nodal vectors.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from gyrify.compiled import njit
 from gyrify.physics.isotropic import coefficients
 from gyrify.physics.neo_hookean import density
 

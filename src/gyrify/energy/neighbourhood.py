@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-import ipctk
+from typing import Any
+
 import numpy as np
 
+from gyrify.energy.collision import CollisionContour
 from gyrify.energy.term import FloatArray
 
 
@@ -16,7 +18,7 @@ class Neighbourhood:
 
     Parameters
     ----------
-    mesh : ipctk.CollisionMesh
+    contour : CollisionContour
         The contour.
     distance : float
         How close counts [mm].
@@ -24,24 +26,23 @@ class Neighbourhood:
         Half the side of the squares [mm].
     """
 
-    def __init__(self, mesh: ipctk.CollisionMesh, distance: float, reach: float) -> None:
-        self.mesh, self.distance, self.reach = mesh, distance, reach
+    def __init__(self, contour: CollisionContour, distance: float, reach: float) -> None:
+        self.contour, self.distance, self.reach = contour, distance, reach
         self._centre: FloatArray | None = None
-        self._pairs = ipctk.Candidates()
+        self._pairs: Any = None
 
     def holds(self, vertices: FloatArray) -> bool:
         """Whether no vertex has left its square."""
         return self._centre is not None and float(np.abs(vertices - self._centre).max()) <= self.reach
 
-    def pairs(self, vertices: FloatArray) -> ipctk.Candidates:
+    def pairs(self, vertices: FloatArray) -> Any:
         """All pairs that may be close at (n_vertices, 2) deformed vertices [mm]; new squares if need be."""
         if not self.holds(vertices):
             self._centre = vertices
-            self._pairs.build(self.mesh, vertices, 0.5 * self.distance + self.reach)
+            self._pairs = self.contour.pairs(vertices, 0.5 * self.distance + self.reach)
         return self._pairs
 
     def collision_free_step(self, start: FloatArray, end: FloatArray) -> float:
         """Fraction of the way between two deformed states, at most 1, along which nothing meets."""
-        if self.holds(start) and self.holds(end):
-            return float(self._pairs.compute_collision_free_stepsize(self.mesh, start, end))
-        return float(ipctk.compute_collision_free_stepsize(self.mesh, start, end))
+        is_known = self.holds(start) and self.holds(end)
+        return self.contour.free_step(start, end, self._pairs if is_known else None)

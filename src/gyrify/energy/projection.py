@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from gyrify.compiled import njit
 
 
 @njit(cache=True)
@@ -40,3 +41,10 @@ def project_to_psd(A):  # type: ignore[no-untyped-def]
                 if eigenvalues[k] > 0.0:
                     entry += eigenvalues[k] * vectors[i, k] * vectors[j, k]
             A[i, j] = entry
+
+
+@njit(cache=True)
+def project_all(blocks):  # type: ignore[no-untyped-def]
+    """Project each matrix of a row of them, in place."""
+    for n in range(blocks.shape[0]):
+        project_to_psd(blocks[n])

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from gyrify.compiled import njit
 from gyrify.energy.lanes import axial_modulus
 from gyrify.energy.projection import project_to_psd
 

@@ -58,6 +58,7 @@ class OnsetSearch:
         is_perfect = problem.config.mesh.node_jitter == 0.0
         # A name of its own: a reference to this object would keep the factors until a collection of cycles.
         perfect = problem.varied(ideal) if is_perfect else Slice(ideal)
+        perfect.contact_library = problem.contact_library
         self._problem = perfect
         self.onset: Onset | None = None
         self.changes: list[StabilityChange] = []

@@ -13,6 +13,8 @@ from pathlib import Path
 from typing import Any, Final, Self
 
 from gyrify.errors import GyrifyError
+from gyrify.pool import deaf_children
+from gyrify.signals import ending_signals
 from gyrify.study import Point, Record, StoredPoint, StudyProgress, final_state, run_points
 from gyrify.study.results import write_results
 
@@ -45,7 +47,8 @@ class Bench:
         if self.workers > 1:
             os.environ.update(dict.fromkeys(_ONE_THREAD, "1"))
             context = multiprocessing.get_context("spawn")
-            self._executor = ProcessPoolExecutor(self.workers, context, _begin_worker)
+            with deaf_children():  # Python begins a process that looks after the queues
+                self._executor = ProcessPoolExecutor(self.workers, context, _begin_worker)
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -93,8 +96,9 @@ class Bench:
 
 
 def _begin_worker() -> None:
-    """Leave Ctrl-C to the parent, and end with it whatever becomes of it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """Leave Ctrl-C and a queue's warnings to the parent, and end with it whatever becomes of it."""
+    for number in ending_signals("SIGTERM"):
+        signal.signal(number, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
     if parent is not None:
         sentinel = parent.sentinel

@@ -14,9 +14,9 @@ three-dimensional gradient whose 33 entry is held: J and I1 are formed with it, 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from gyrify.compiled import njit
 from gyrify.physics.neo_hookean import density, derivatives
 
 FloatArray = NDArray[np.float64]

@@ -87,7 +87,7 @@ def stored_folder(folder: Path) -> Iterator[str]:
     """
     if not (folder / JOURNAL).is_file():
         raise HistoryError(f"There is no run in {folder}.", "Name a folder that `gyrify run` has written.")
-    for name in ("", "-wal", "-shm"):
+    for name in ("", "-wal", "-shm", "-journal"):
         refuse_link(folder / f"{JOURNAL}{name}")
     with run_lock(folder) as note:
         yield note
@@ -102,6 +102,6 @@ def write_config(folder: Path, config: str) -> None:
 
 def _leftovers(folder: Path) -> Iterator[Path]:
     """Files of an earlier run, and nothing else that a user may keep in the folder."""
-    names = [*RUN_FILES, f"{JOURNAL}-wal", f"{JOURNAL}-shm"]
+    names = [*RUN_FILES, *(f"{JOURNAL}{suffix}" for suffix in ("-wal", "-shm", "-journal"))]
     paths = (folder / name for name in names)
     return (path for path in paths if path.is_symlink() or path.exists())

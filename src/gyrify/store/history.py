@@ -225,14 +225,17 @@ class History(Views):
         return self.journal.meta("linear_solver", "unknown")
 
     @property
+    def contact_library(self) -> str:
+        """What computed contact: ``ipctk``, ``gyrify`` (kernels of its own), or ``none`` where it is off."""
+        return self.journal.meta("contact_library", "ipctk" if self.config.contact.enabled else "none")
+
+    @property
     def stable(self) -> bool | None:
         """Whether the last state keeps its folds once growth stops; None while unknown.
 
-        Without dissipation: whether it is a stable equilibrium. With it: whether the state that it relaxes to
-        has the same folds (`relaxed`).
+        It is a stable equilibrium or, with dissipation, relaxes to one with the same folds (`relaxed`).
         """
-        known = self.journal.meta("stable")
-        return known == "true" if known else None
+        return {"true": True, "false": False}.get(self.journal.meta("stable"))
 
     @property
     def onset(self) -> Onset | None:

@@ -29,6 +29,7 @@ _WORDS: Final = (
     "relaxed",
     "smooth_until",
     "linear_solver",
+    "contact_library",
     "config",
     "versions",
 )

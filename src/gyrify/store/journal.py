@@ -3,7 +3,7 @@
 It holds the full float64 state and all that the next increment depends on, so that a run killed at any
 moment continues from its last accepted increment to the same bytes. Write-ahead logging with
 ``synchronous = NORMAL`` survives the death of the process at any instruction; after a loss of power the
-last increments may be gone, never damaged.
+last increments may be gone, never damaged. See `gyrify.store.database` for disks that cannot do that.
 """
 
 from __future__ import annotations
@@ -24,7 +24,15 @@ from gyrify.solve.result import Stats
 from gyrify.solve.stability import Onset, StabilityChange
 from gyrify.solve.types import FloatArray
 from gyrify.store import onset_rows
-from gyrify.store.database import RERUN, connect, transaction, translated
+from gyrify.store.database import (
+    APPLICATION_ID,
+    RERUN,
+    open_for_reading,
+    open_for_writing,
+    settle,
+    transaction,
+    translated,
+)
 from gyrify.store.integrity import (
     confine,
     digest,
@@ -39,7 +47,6 @@ from gyrify.store.tables import TABLES, TABLES_OF_ANY_VERSION
 
 FORMAT: Final = 1
 _IMPOSSIBLE: Final = "it holds values that no run can have"
-_APPLICATION_ID: Final = 0x67797269  # "gyri"
 
 
 class Journal:
@@ -69,18 +76,16 @@ class Journal:
         """
         try:
             with translated("in memory" if path is None else str(path)):
-                connection = sqlite3.connect(":memory:" if path is None else path, isolation_level=None)
-                connection.execute("PRAGMA journal_mode = WAL")
-                connection.execute("PRAGMA synchronous = NORMAL")
+                connection = open_for_writing(path, is_new=True)
                 with transaction(connection):
                     for statement in filter(str.strip, TABLES.split(";")):
                         connection.execute(statement)
                     connection.executemany("INSERT INTO meta VALUES (?, ?)", sealed(meta).items())
-                    connection.execute(f"PRAGMA application_id = {_APPLICATION_ID}")
+                    connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
                     connection.execute(f"PRAGMA user_version = {FORMAT}")
         except HistoryError as fault:
             if path is not None:  # half a journal is no run: nothing was accepted yet
-                for suffix in ("", "-wal", "-shm"):
+                for suffix in ("", "-wal", "-shm", "-journal"):
                     Path(f"{path}{suffix}").unlink(missing_ok=True)
             advice = fault.advice.replace("continue with `gyrify resume`", "run again")
             raise HistoryError(fault.message, advice) from fault
@@ -102,14 +107,14 @@ class Journal:
         if path.stat().st_size == 0:
             raise _nothing_stored(path)
         with translated(str(path)):
-            connection = connect(path, read_only)
+            connection = open_for_reading(path) if read_only else open_for_writing(path)
             confine(connection)
             (application,) = connection.execute("PRAGMA application_id").fetchone()
             (version,) = connection.execute("PRAGMA user_version").fetchone()
             (n_tables,) = connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
         if not (application or n_tables):  # killed between the making of the file and of its tables
             raise _nothing_stored(path)
-        if application != _APPLICATION_ID:
+        if application != APPLICATION_ID:
             raise HistoryError(
                 f"{path} is not a gyrify journal.", "Name a folder that `gyrify run` has written."
             )
@@ -131,7 +136,7 @@ class Journal:
     def settle(self) -> None:
         """Fold the write-ahead log into the one file, where nobody else is reading and the disk has room."""
         with suppress(sqlite3.Error):
-            self._connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+            settle(self._connection)
 
     def check(self) -> None:
         """Recompute every checksum.

@@ -15,15 +15,22 @@ from filelock import FileLock, Timeout
 
 from gyrify.config.words import shorten
 from gyrify.errors import HistoryError
+from gyrify.store import disks
 from gyrify.store.faults import storage_faults
 from gyrify.store.files import read_facts, refuse_link
+from gyrify.store.soft_lock import SoftLock, is_stale
 
 OWNER: Final = "run.owner.json"
+LOCK: Final = "run.lock"
+# Where the system's locks do not work.
+SOFT_LOCK: Final = "run.lock.json"
 
 
 @contextmanager
 def run_lock(folder: Path, what: str = "run") -> Iterator[str]:
     """Hold the folder for this process; the operating system lets go when the process dies.
+
+    On a disk without locks, a file stands for it, and the next process takes it over once this one has died.
 
     Parameters
     ----------
@@ -43,17 +50,14 @@ def run_lock(folder: Path, what: str = "run") -> Iterator[str]:
         If another process holds the folder, or the folder cannot be written.
     """
     owner = folder / OWNER
-    for path in (owner, folder / "run.lock"):
+    for path in (owner, folder / LOCK, folder / SOFT_LOCK):
         refuse_link(path)
-    lock = FileLock(folder / "run.lock")
     with storage_faults(folder):
-        try:
-            lock.acquire(timeout=0)
-        except Timeout as held:
-            raise HistoryError(
-                f"The {what} folder {folder} is in use by {_describe(owner)}.",
-                "Wait for that process, stop it, or choose another folder with --out.",
-            ) from held
+        lock = _acquired(folder)
+    if lock is None:
+        raise HistoryError(
+            f"The {what} folder {folder} is in use by {_describe(owner)}.", _advice(folder / SOFT_LOCK)
+        )
     try:
         stale = (
             f"{_describe(owner)} ended without closing this {what}; this process uses the folder now."
@@ -66,6 +70,39 @@ def run_lock(folder: Path, what: str = "run") -> Iterator[str]:
     finally:
         owner.unlink(missing_ok=True)
         lock.release()
+
+
+def _acquired(folder: Path) -> FileLock | SoftLock | None:
+    """Lock of the best kind that the disk has; None where another process holds it.
+
+    A lock by a file counts on every disk: another machine may see the same folder without the system's locks.
+    """
+    soft = folder / SOFT_LOCK
+    if not disks.has_file_locks(folder):
+        lock = SoftLock(soft)
+        return lock if lock.acquire() else None
+    if soft.exists() and not is_stale(soft):
+        return None
+    hard = FileLock(folder / LOCK)
+    try:
+        hard.acquire(timeout=0)
+    except Timeout:
+        return None
+    soft.unlink(missing_ok=True)
+    return hard
+
+
+def _advice(soft: Path) -> str:
+    """What to do about a folder in use."""
+    advice = "Wait for that process, stop it, or choose another folder with --out."
+    if not soft.exists():
+        return advice
+    kind, _ = disks.file_system(soft)
+    disk = f"a disk of type {shorten(kind, 40)}" if kind else "a disk"
+    return (
+        f"{advice} The folder is on {disk} without locks: if that process has ended on another machine, "
+        f"the folder is free five minutes later, or as soon as you remove {soft}."
+    )
 
 
 def has_owner(folder: Path) -> bool:

@@ -88,7 +88,7 @@ def write_vtkhdf(
     partial = target.with_name(target.name + ".partial")
     with storage_faults(target.parent, str(target)):
         try:
-            with h5py.File(fresh(partial), "w") as file:
+            with h5py.File(fresh(partial), "w", locking=False) as file:
                 root = file.create_group("VTKHDF")
                 _write_geometry(root, history, steps)
                 _write_fields(root, history, steps, names)

@@ -28,7 +28,7 @@ def write_xdmf(history: History, path: Path, states: list[int], names: tuple[Out
         parent = ElementTree.SubElement(
             parent, "Grid", Name="run", GridType="Collection", CollectionType="Temporal"
         )
-    with h5py.File(fresh(heavy), "w") as file:
+    with h5py.File(fresh(heavy), "w", locking=False) as file:
         file["points"], file["cells"] = padded(history.mesh.points), history.mesh.cells
         for number in states:
             time = repr(float(history.growth_times[number]))

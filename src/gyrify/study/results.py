@@ -93,6 +93,7 @@ QUANTITIES: Final = {
     "solver_residual": _FLOAT,
     "solver_tolerance": _FLOAT,
     "solver_linear_solver": _TEXT,
+    "solver_contact_library": _TEXT,
     "phenotype": _TEXT,
     "phenotype_rule": _TEXT,
 }

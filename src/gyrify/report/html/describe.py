@@ -125,5 +125,6 @@ def solver(summary: dict[str, Any]) -> list[list[Any]]:
         ["smallest gap of the contour", summary["min_gap_mm"], "mm"],
         ["contour nodes per fold", summary["nodes_per_wavelength"], ""],
         ["linear solver", work["linear_solver"], ""],
+        ["contact by", work.get("contact_library", "unknown"), ""],
         ["time spent", work["wall_s"], "s"],
     ]
