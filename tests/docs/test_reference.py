@@ -73,6 +73,11 @@ def test_the_reference_is_in_short_pages_that_an_index_lists() -> None:
         assert [name for name in names if f"`{name}`" not in index] == []
 
 
+def test_members_from_a_base_class_are_in_the_reference() -> None:
+    assert ":inherited-members:" in text("api/history.md").split("gyrify.History\n")[1].split("..")[0]
+    assert {"at", "plot", "to_pyvista"} <= set(dir(gyrify.History))
+
+
 def test_the_first_page_has_version_gallery_and_clone() -> None:
     page = text("index.md")
     assert f"This is version {gyrify.__version__};" in page

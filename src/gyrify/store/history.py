@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,10 +23,6 @@ from gyrify.store.indices import Index, gathered, state_number
 from gyrify.store.journal import Journal
 from gyrify.store.lock import has_owner
 from gyrify.store.views import Views
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
-    from pyvista import UnstructuredGrid
 
 
 class History(Views):
@@ -269,35 +264,6 @@ class History(Views):
     def negative_pivots(self) -> dict[int, int]:
         """Negative pivots of the tissue's stiffness, by the states that were looked at."""
         return self.journal.negative_pivots
-
-    def to_dataframe(self) -> DataFrame:
-        """Metrics of every state as a pandas table, one row per state; see `gyrify.notebook`."""
-        from gyrify.notebook import to_dataframe
-
-        return to_dataframe(self)
-
-    def to_pyvista(
-        self, index: int = -1, *, time: float | None = None, deformed: bool = True
-    ) -> UnstructuredGrid:
-        """A state as a PyVista grid with all its fields; see `gyrify.notebook`.
-
-        Parameters
-        ----------
-        index : int
-            State; negative numbers count from the end.
-        time : float, optional
-            Growth time, in place of the index; see `at`.
-        deformed : bool
-            Whether points are current ones, or reference ones that ``displacement`` warps.
-        """
-        from gyrify.notebook import to_pyvista
-
-        return to_pyvista(self, index if time is None else self.at(time), deformed=deformed)
-
-    def _repr_html_(self) -> str:
-        from gyrify.notebook import html
-
-        return html(self)
 
     def __repr__(self) -> str:
         return f"History({len(self)} states, {self.fractions[-1]:.0%} grown, {self.status})"

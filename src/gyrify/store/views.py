@@ -1,4 +1,4 @@
-"""What a history shows: the state at a growth time, and pictures."""
+"""What a history shows: the state at a growth time, pictures, and itself to other libraries."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from gyrify.solve.types import FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from pandas import DataFrame
+    from pyvista import UnstructuredGrid
 
 
 class Views:
@@ -59,3 +61,32 @@ class Views:
         from gyrify.notebook import plot
 
         return plot(self, what, **options)
+
+    def to_dataframe(self) -> DataFrame:
+        """Metrics of every state as a pandas table, one row per state; see `gyrify.notebook`."""
+        from gyrify.notebook import to_dataframe
+
+        return to_dataframe(self)  # type: ignore[arg-type]
+
+    def to_pyvista(
+        self, index: int = -1, *, time: float | None = None, deformed: bool = True
+    ) -> UnstructuredGrid:
+        """A state as a PyVista grid with all its fields; see `gyrify.notebook`.
+
+        Parameters
+        ----------
+        index : int
+            State; negative numbers count from the end.
+        time : float, optional
+            Growth time, in place of the index; see `at`.
+        deformed : bool
+            Whether points are current ones, or reference ones that ``displacement`` warps.
+        """
+        from gyrify.notebook import to_pyvista
+
+        return to_pyvista(self, index if time is None else self.at(time), deformed=deformed)  # type: ignore[arg-type]
+
+    def _repr_html_(self) -> str:
+        from gyrify.notebook import html
+
+        return html(self)  # type: ignore[arg-type]
