@@ -23,6 +23,7 @@ NUMERICS: Final = (
     "solve",
     "onset",
     "run",
+    "theory",
     "metrics",
     "measuring",
     "summary",

@@ -53,7 +53,7 @@ def test_the_same_command_rebuilds_without_simulating(
     assert told["total"] == len(told["rows"]) == 18
     assert told["passed"] == sum(row["passed"] is True for row in told["rows"]) >= 2
     assert [row["ours"] for row in told["rows"][:2]] == ["3.592", "2.78; 1.71"]
-    assert {"reading", "rows", "passed", "total", "wall_s"} == set(told)
+    assert {"reading", "rows", "passed", "total", "wall_s", "warnings"} == set(told)
     assert all(row["note"] for row in told["rows"] if row["passed"] is False)
     assert "generalised, linear, grown, drag 2.6" in told["reading"]
     assert kept == {file: file.read_bytes() for file in kept}

@@ -51,12 +51,36 @@ def test_a_row_is_what_the_run_itself_comes_to(done: Path) -> None:
         assert row["wall_s"] > 0.0
 
 
+def test_warnings_are_a_column_that_older_tables_do_not_have(copy: Path, capsys: Any) -> None:
+    import pyarrow.parquet as pq
+
+    from gyrify.cli import main
+
+    table = read_results(copy)
+    for row in table.to_pylist():
+        assert row["warnings"] == "\n".join(read_record(copy, row["key"])["warnings"])
+        assert row["expected_mode_number"] in (None, 19, 20)
+    assert main(["table", str(copy)]) == 0
+    assert "with warnings" in capsys.readouterr().out
+    later = ["warnings", "expected_growth_time", "expected_mode_number", "expected_wavelength_mm"]
+    pq.write_table(pq.read_table(copy / "results.parquet").drop_columns(later), copy / "results.parquet")
+    assert "warnings" not in read_results(copy).column_names
+    assert main(["table", str(copy)]) == 0
+    assert "with warnings" not in capsys.readouterr().out
+
+
+def read_record(folder: Path, key: str) -> dict[str, Any]:
+    summary: dict[str, Any] = final_state(folder, key).summary
+    return summary
+
+
 def test_every_quantity_of_a_summary_has_its_column(folded: History) -> None:
     from gyrify.study.results import QUANTITIES, flat
 
     summary = summarise(folded)
     known = {"status", "reason", "advice", "config_hash", "result_hash", "seed", "solver_wall_s"}
-    known |= {"stability_changes", "warnings"}
+    known |= {"stability_changes", "expected_theory", "expected_not_covered"}
+    known |= {f"converged_{name}" for name in ("known", "converged", "limit", "sentence", "command")}
     told = ("versions_", "parameters_", "units_")
     found = {name for name in flat(summary) if not name.startswith(told)} - known
     assert found == set(QUANTITIES) - {"phenotype", "phenotype_rule"}

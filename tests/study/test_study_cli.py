@@ -22,11 +22,14 @@ def file(tmp_path: Path) -> Path:
     return path
 
 
+WARNING = "gyrify: Warning: "
+
+
 def test_it_tells_every_run_and_where_the_results_are(file: Path, tmp_path: Path, capsys: Capture) -> None:
     out = tmp_path / "out"
     assert main(["study", str(file), "--out", str(out), "--workers", "1"]) == 0
     printed, said = capsys.readouterr()
-    lines = said.splitlines()
+    lines = [line for line in said.splitlines() if not line.startswith(WARNING)]
     assert lines[0] == "gyrify: 4 runs, none known yet"
     assert [line.split(": ")[1] for line in lines[1:]] == ["1 of 4", "2 of 4", "3 of 4", "4 of 4"]
     assert "growth.ratio = 3.6, dissipation.number = 0.5: GI 1." in lines[3]
@@ -45,7 +48,9 @@ def test_it_tells_every_run_and_where_the_results_are(file: Path, tmp_path: Path
     assert main(["study", str(file), "--out", str(out), "--quiet"]) == 0
     printed, said = capsys.readouterr()
     assert "4 of them before" in printed
-    assert said == ""
+    # Warnings survive --quiet, those of runs that were known too.
+    assert said.startswith(f"{WARNING}4 of 4 runs have warnings")
+    assert all(line.startswith(WARNING) for line in said.splitlines())
 
 
 def test_json_names_failures_and_the_exit_code_tells_them(
@@ -58,7 +63,11 @@ def test_json_names_failures_and_the_exit_code_tells_them(
     assert main(["study", str(file), "--out", str(out), "--workers", "1", "--json", "--quiet"]) == 1
     printed, said = capsys.readouterr()
     found = json.loads(printed)
-    assert said == ""
+    assert all(line.startswith(WARNING) for line in said.splitlines())
+    keys = {key for told in found["warnings"] for key in told["keys"]}
+    rows = {row["key"]: row["warnings"] for row in read_results(out).to_pylist()}
+    assert keys
+    assert all(told["warning"] in rows[key].split("\n") for told in found["warnings"] for key in told["keys"])
     assert (found["status"], found["total"], found["completed"]) == ("failed", 2, 1)
     assert len(found["failures"]) == 1
     assert all("Buckling" in failure["reason"] for failure in found["failures"])

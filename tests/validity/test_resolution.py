@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import re
 from typing import Any
 
 import pytest
 from validity_cases import PUBLISHED, THIN, case
 
+from gyrify.cli import main
 from gyrify.config import Config, preset_names
 from gyrify.simulation import simulate
 from gyrify.summary import measure_state
@@ -44,6 +46,17 @@ def test_a_mesh_that_is_late_is_told_and_the_advice_works(name: str) -> None:
     better = config.replace(**changes)
     assert resolution(better) == []
     assert not mesh_onset(better).is_late
+
+
+def test_config_check_tells_it_and_stays_valid(capsys: pytest.CaptureFixture[str]) -> None:
+    command = ["config", "check", "--thickness", "0.5", "--set", "mesh.n_around=72"]
+    assert main([*command, "--json"]) == 0
+    printed = capsys.readouterr()
+    told = json.loads(printed.out)["warnings"]
+    assert resolution(case(THIN))[0] in told
+    assert f"gyrify: Warning: {resolution(case(THIN))[0]}" in printed.err
+    nearly = case({"material.poisson_ratio": 0.4999})
+    assert any("locks" in sentence for sentence in config_warnings(nearly))
 
 
 def test_a_thin_cortex_on_72_points_is_hidden_and_not_late() -> None:

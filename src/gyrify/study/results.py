@@ -44,7 +44,7 @@ _LEFT_OUT: Final = {
     "converged_command",
 }
 # What an incomplete run has too.
-_OF_ANY_END: Final = ("growth_time", "solver_")
+_OF_ANY_END: Final = ("growth_time", "solver_", "warnings", "expected_")
 _INT, _TEXT, _BOOL, _FLOAT = "int64", "string", "bool", "float64"
 # Columns that are always there, with their types; what else a summary holds comes after them.
 QUANTITIES: Final = {

@@ -23,7 +23,11 @@ function createNotices(run) {
       element("strong", {}, `${ending} at ${brief(100 * run.grown, 3)} % of growth.`),
       element("p", {}, `${run.reason} ${run.advice}`.trim() || "Everything below is of the states that it reached.")));
   }
-  for (const warning of run.warnings) notices.push(element("div", { class: "notice" }, warning));
+  // Several would push the scene out of sight: they are opened by a click.
+  if (run.warnings.length === 1) notices.push(element("div", { class: "notice" }, run.warnings[0]));
+  if (run.warnings.length > 1)
+    notices.push(element("details", { class: "notice" }, element("summary", {}, `${run.warnings.length} warnings about this run`),
+      element("ul", {}, run.warnings.map((warning) => element("li", {}, warning)))));
   return notices;
 }
 
