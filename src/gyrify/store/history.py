@@ -13,19 +13,18 @@ from gyrify.config import Config
 from gyrify.errors import HistoryError
 from gyrify.mesh import Mesh
 from gyrify.model import Slice
-from gyrify.onset.relaxation import Relaxation
 from gyrify.solve.problem import TICKS
 from gyrify.solve.result import Stats
-from gyrify.solve.stability import Onset, StabilityChange
 from gyrify.solve.types import FloatArray
 from gyrify.store.database import RERUN
 from gyrify.store.indices import Index, gathered, state_number
 from gyrify.store.journal import Journal
 from gyrify.store.lock import has_owner
+from gyrify.store.stability_views import StabilityViews
 from gyrify.store.views import Views
 
 
-class History(Views):
+class History(Views, StabilityViews):
     """States of a run in the order of growth; increment 0 is the reference state.
 
     Parameters
@@ -223,47 +222,6 @@ class History(Views):
     def contact_library(self) -> str:
         """What computed contact: ``ipctk``, ``gyrify`` (kernels of its own), or ``none`` where it is off."""
         return self.journal.meta("contact_library", "ipctk" if self.config.contact.enabled else "none")
-
-    @property
-    def stable(self) -> bool | None:
-        """Whether the last state keeps its folds once growth stops; None while unknown.
-
-        It is a stable equilibrium or, with dissipation, relaxes to one with the same folds (`relaxed`).
-        """
-        return {"true": True, "false": False}.get(self.journal.meta("stable"))
-
-    @property
-    def onset(self) -> Onset | None:
-        """Where the smooth equilibrium first loses stability; None where it does not, or none was looked for.
-
-        It is that of the slice without node jitter and dissipation, on the run's own mesh, and the same for
-        every drag number. It is known as soon as growth has passed it.
-        """
-        return self.journal.onset
-
-    @property
-    def stability_changes(self) -> tuple[StabilityChange, ...]:
-        """Every change in the number of unstable modes of the smooth equilibrium that growth has passed."""
-        return self.journal.stability_changes
-
-    @property
-    def smooth_until(self) -> float | None:
-        """Growth time at which the smooth equilibrium ends or folds by degrees; None where it goes on."""
-        try:
-            found = float(self.journal.meta("smooth_until"))
-        except ValueError:
-            return None
-        return found if np.isfinite(found) else None
-
-    @property
-    def relaxed(self) -> Relaxation | None:
-        """What the last state of a run with dissipation relaxes to once growth stops; None while unknown."""
-        return Relaxation.from_text(self.journal.meta("relaxed"))
-
-    @property
-    def negative_pivots(self) -> dict[int, int]:
-        """Negative pivots of the tissue's stiffness, by the states that were looked at."""
-        return self.journal.negative_pivots
 
     def __repr__(self) -> str:
         return f"History({len(self)} states, {self.fractions[-1]:.0%} grown, {self.status})"
