@@ -37,6 +37,7 @@ COMPILED = (
     "physics/neo_hookean.py",
     "physics/isotropic.py",
     "energy/kernels.py",
+    "energy/bernstein.py",
     "energy/cell.py",
     "energy/lanes.py",
     "energy/dashpot.py",

@@ -97,6 +97,7 @@ def _mesh(rng: np.random.Generator) -> Values:
     }
     if values["mesh.element"] == "quadratic":  # four times the points of linear cells
         values["mesh.n_around"] = min(60, values["mesh.n_around"])
+        values["mesh.inversion_resistance"] = 0.1
     return values
 
 

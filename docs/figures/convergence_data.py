@@ -36,7 +36,8 @@ def meshed(size: tuple[int, int, int], element: str, **others: object) -> dict[s
     """Overrides for a mesh."""
     around, layers, cortex = size
     mesh = {"mesh.n_around": around, "mesh.n_layers": layers, "mesh.n_cortex_layers": cortex}
-    return {"mesh.element": element, **mesh, **others}
+    resistance = {"mesh.inversion_resistance": 0.1} if element == "quadratic" else {}
+    return {"mesh.element": element, **mesh, **resistance, **others}
 
 
 def cases() -> dict[str, dict[str, object]]:

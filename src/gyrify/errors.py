@@ -31,12 +31,12 @@ class MeshError(GyrifyError):
     """A geometry that cannot be meshed well."""
 
 
-class InvertedCellError(GyrifyError):
-    """A state in which a cell has a non-positive volume."""
-
-
 class SolveError(GyrifyError):
     """A run that could not be brought to its final growth time."""
+
+
+class InvertedCellError(SolveError):
+    """A run that cannot go on because somewhere in a cell the volume would not stay positive."""
 
 
 class LimitReachedError(GyrifyError):

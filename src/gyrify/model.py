@@ -9,6 +9,7 @@ import numpy as np
 from gyrify.config import Config
 from gyrify.energy.collision import LibraryName
 from gyrify.energy.contact import ContactEnergy, ContactSurface
+from gyrify.energy.inversion import InversionBarrier
 from gyrify.energy.kinematics import ElasticKinematics
 from gyrify.energy.term import EnergyTerm, FloatArray, IntArray
 from gyrify.energy.total import TotalEnergy
@@ -166,9 +167,7 @@ class Slice(Tissue):
         terms: list[EnergyTerm] = [
             self.elastic_energy(self.kinematics(fraction * self.config.growth.duration))
         ]
-        if self.config.contact.enabled:
-            terms.append(self.contact_energy(start_u))
-        return TotalEnergy(terms)
+        return TotalEnergy([*terms, *self._barriers(start_u)])
 
     def tangent(self, fraction: float, u: FloatArray, start_u: FloatArray, system: System) -> Tangent:
         """Exact stiffness of elasticity and contact alone at a state."""
@@ -192,9 +191,7 @@ class Slice(Tissue):
         kinematics = self.kinematics(fraction * duration)
         terms: list[EnergyTerm] = [self.elastic_energy(kinematics)]
         terms += self._dissipation(kinematics, start, start_fraction * duration, fraction - start_fraction)
-        if self.config.contact.enabled:
-            terms.append(self.contact_energy(start.u))
-        return TotalEnergy(terms)
+        return TotalEnergy([*terms, *self._barriers(start.u)])
 
     def system(self, couplings: IntArray, unknowns: Unknowns | None = None) -> System:
         """See `gyrify.solve.problem.Problem`; of all free degrees of freedom unless unknowns are given."""
@@ -217,6 +214,18 @@ class Slice(Tissue):
     def is_path_admissible(self, u: FloatArray, u_end: FloatArray) -> bool:
         """See `gyrify.solve.problem.Problem`."""
         return not self.config.contact.enabled or self.surface.is_path_collision_free(u, u_end)
+
+    def _barriers(self, start_u: FloatArray) -> list[EnergyTerm]:
+        """What keeps cells from inverting, and the contour from itself."""
+        terms: list[EnergyTerm] = []
+        share, curved = self.config.mesh.inversion_resistance, self.simplices.curved
+        if share > 0.0 and curved is not None:
+            first = np.searchsorted(self.simplices.cell, np.arange(self.mesh.n_cells))
+            stiffness = share * self.config.material.young_modulus
+            terms.append(InversionBarrier(curved, stiffness, self.pattern, first))
+        if self.config.contact.enabled:
+            terms.append(self.contact_energy(start_u))
+        return terms
 
     def _dissipation(
         self, kinematics: ElasticKinematics, start: State, start_time: float, span: float

@@ -24,6 +24,7 @@ import numpy as np
 
 from gyrify.energy.contact import ContactEnergy
 from gyrify.energy.elastic import ElasticEnergy
+from gyrify.energy.inversion import InversionBarrier
 from gyrify.model import Slice
 from gyrify.solve.problem import State
 from gyrify.solve.types import FloatArray
@@ -44,7 +45,9 @@ class Increment:
     rise : float
         Change of the energy that was minimised, from the start, over that energy; never positive.
     min_J, min_J_elastic : float
-        Smallest J and J_e of its cells [-].
+        Smallest J and J_e over the whole of its cells [-].
+    smallest_cell, smallest_elastic_cell : int
+        The cells that have them.
     is_path_free : bool
         Whether the contour crosses itself nowhere on the straight path to here; true without contact.
     elastic, contact : float
@@ -60,6 +63,8 @@ class Increment:
     rise: float
     min_J: float
     min_J_elastic: float
+    smallest_cell: int
+    smallest_elastic_cell: int
     is_path_free: bool
     elastic: float
     contact: float
@@ -102,12 +107,12 @@ def _evaluate(
         if isinstance(term, ElasticEnergy):
             grown = problem.elastic_energy(problem.kinematics(span[0] * duration)).evaluate(before.u, 0).value
             change["elastic"] = end.value - grown
-        elif isinstance(term, ContactEnergy):
-            change["contact"] = end.value - start
+        elif isinstance(term, ContactEnergy | InversionBarrier):
+            change["contact"] += end.value - start
         elif end.gradient is not None:
             force_after = end.gradient
     gradient[problem.mesh.clamped] = 0.0
-    J = problem.volume_ratio(after.u)
+    J, J_e = problem.least_volume_ratios(after.u, span[1] * duration)
     power_after = _growth_power(problem, span[1], after.u)
     work, work_error = _growth_work(problem, before, after, span, (power, power_after))
     return (
@@ -116,7 +121,9 @@ def _evaluate(
             stored_residual=after.residual,
             rise=change["rise"] / scale if scale > 0.0 else 0.0,
             min_J=float(J.min()),
-            min_J_elastic=float((J / problem.volume_growth(span[1] * duration)).min()),
+            min_J_elastic=float(J_e.min()),
+            smallest_cell=int(J.argmin()),
+            smallest_elastic_cell=int(J_e.argmin()),
             is_path_free=problem.is_path_admissible(before.u, after.u),
             elastic=change["elastic"],
             contact=change["contact"],

@@ -12,6 +12,7 @@ from gyrify.energy.elastic import CellPattern, ElasticEnergy
 from gyrify.energy.kinematics import ElasticKinematics, Simplices
 from gyrify.energy.mean_dilatation import MeanDilatationEnergy, PatchPattern
 from gyrify.energy.term import FloatArray, IntArray
+from gyrify.errors import InvertedCellError
 from gyrify.mesh import GREY, Mesh
 from gyrify.meshing import build_mesh
 from gyrify.physics.growth import growth_stretch, growth_tensor, out_of_plane_growth
@@ -27,6 +28,11 @@ class Tissue:
         Every number of the run.
     mesh : Mesh, optional
         Mesh to use instead of the configured one.
+
+    Raises
+    ------
+    InvertedCellError
+        If a cell of the mesh is inverted, anywhere in it.
 
     Attributes
     ----------
@@ -71,7 +77,15 @@ class Tissue:
     @cached_property
     def simplices(self) -> Simplices:
         """Integration points and their shape-function gradients."""
-        return Simplices.of(self.mesh.cell_points, self.mesh.cells, self.mesh.n_points)
+        simplices = Simplices.of(self.mesh.cell_points, self.mesh.cells, self.mesh.n_points)
+        cell = simplices.first_inverted(np.zeros_like(self.mesh.points))
+        if cell is not None:
+            middle = ", ".join(f"{x:.4g}" for x in self.mesh.cell_points[cell].mean(axis=0))
+            raise InvertedCellError(
+                f"Cell {cell} of the mesh, at ({middle}) mm, is inverted; it must be positive everywhere.",
+                "List its corners counter-clockwise; keep nodes between them near the middles of the sides.",
+            )
+        return simplices
 
     @cached_property
     def pattern(self) -> CellPattern:
@@ -134,8 +148,16 @@ class Tissue:
         return 1.0 + float(u[-1, 0]) / self.axial_length if self.has_axial_unknown else 1.0
 
     def volume_ratio(self, u: FloatArray) -> FloatArray:
-        """(n,) J = det F of a state, the 33 entry included."""
+        """(n,) J = det F of a state at the integration points, the 33 entry included."""
         return self.simplices.volume_ratio(u) * self.axial_stretch(u)
+
+    def least_volume_ratios(self, u: FloatArray, time: float) -> tuple[FloatArray, FloatArray]:
+        """(n_cells,) least J of a state over the whole of each cell, and least J_e = J / J_g at a time.
+
+        Where J varies inside a cell both are bounds from below; see `gyrify.energy.curved`.
+        """
+        J = self.simplices.least_volume_ratio(u) * self.axial_stretch(u)
+        return J, J / self.simplices.largest_of_cells(self.volume_growth(time))
 
     def volumetric_pressure(self, u: FloatArray, time: float) -> FloatArray | None:
         """(n,) kappa (mean J_e - 1) [Pa] where the element averages the volume ratio, else None."""

@@ -17,7 +17,7 @@ from gyrify.store import History
 KINDS = {
     "linear": {},
     "softer": {"material.stiffness_ratio": 0.7},
-    "quadratic": {"mesh.element": "quadratic", "mesh.n_around": 36},
+    "quadratic": {"mesh.element": "quadratic", "mesh.n_around": 36, "mesh.inversion_resistance": 0.1},
     "mean_dilatation": {"mesh.element": "mean_dilatation", "geometry.shape": "circle"},
     "strip": {"geometry.shape": "strip", "mesh.n_around": 36},
     "smooth": {"growth.ratio": 1.0, "solver.increments": 4},

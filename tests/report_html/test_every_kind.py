@@ -13,7 +13,7 @@ from gyrify.simulation import simulate
 from gyrify.store import History
 
 KINDS = {
-    "quadratic": {"mesh.element": "quadratic"},
+    "quadratic": {"mesh.element": "quadratic", "mesh.inversion_resistance": 0.1},
     "mean_dilatation": {"mesh.element": "mean_dilatation", "geometry.shape": "circle"},
     "strip": {"geometry.shape": "strip", "growth.duration": 300.0},
     "generalised": {"growth.out_of_plane": "generalised"},

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gyrify import Config, simulate
+from gyrify import Config, InvertedCellError, simulate
 from gyrify.verify import verify
 
 # Half of a quadratic cell's side on the contour collapses at the tip of a sulcus: where contact does not
@@ -37,7 +37,8 @@ CREASED = {
 
 @pytest.mark.parametrize("seed", [21, 31])
 def test_contact_keeps_the_edges_of_a_crease_from_collapsing(tmp_path: Path, seed: int) -> None:
-    config = Config.preset("reference-slice").with_overrides({**CREASED, "seed": seed})
+    resisted = {**CREASED, "seed": seed, "mesh.inversion_resistance": 0.1}
+    config = Config.preset("reference-slice").with_overrides(resisted)
     history = simulate(config, tmp_path)
     assert history.status == "completed"
     surface, journal = history.slice.surface, history.journal
@@ -45,3 +46,13 @@ def test_contact_keeps_the_edges_of_a_crease_from_collapsing(tmp_path: Path, see
     assert np.min(edges) > 0.005 * edges[0]
     journal.close()
     assert verify(tmp_path).passed
+
+
+def test_a_run_whose_cells_would_invert_ends_with_an_advice_that_works() -> None:
+    """The test above follows the advice; without it the cell at the crease would invert at its side."""
+    config = Config.preset("reference-slice").with_overrides(
+        {**CREASED, "seed": 31, "solver.min_increment": 0.01}
+    )
+    with pytest.raises(InvertedCellError, match="would invert a cell") as ended:
+        simulate(config)
+    assert "mesh.inversion_resistance = 0.1" in ended.value.advice

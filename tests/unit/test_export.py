@@ -135,7 +135,9 @@ def test_a_path_that_cannot_be_written_is_named(folded: History, tmp_path: Path)
 
 
 def test_quadratic_cells_keep_their_six_nodes(tiny: Config, tmp_path: Path):
-    history = simulate(tiny.with_overrides({"mesh.element": "quadratic", "solver.increments": 2}))
+    history = simulate(
+        tiny.with_overrides({"mesh.element": "quadratic", "solver.increments": 2, "growth.duration": 50.0})
+    )
     path, _ = export(history, "xdmf", tmp_path / "run.xdmf")
     topology = next(ElementTree.parse(path).iter("Topology"))
     assert topology.get("TopologyType") == "Triangle_6"

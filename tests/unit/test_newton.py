@@ -192,6 +192,8 @@ def test_an_inadmissible_start_is_named() -> None:
 def test_no_room_for_a_step_is_named() -> None:
     well = Well(4.0)
     well.max_step = lambda u, du: 0.0  # noqa: ARG005
+    assert solved(well, 3.0).result is Result.INVERTING
+    well.is_barrier = True
     assert solved(well, 3.0).result is Result.BLOCKED
 
 

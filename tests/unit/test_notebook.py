@@ -85,7 +85,9 @@ def test_pyvista_grid_has_the_deformed_points_and_all_fields(history: History) -
 
 def test_pyvista_grid_of_quadratic_cells_keeps_their_curved_edges(tiny: Config) -> None:
     pyvista = pytest.importorskip("pyvista")
-    history = simulate(tiny.with_overrides({"mesh.element": "quadratic", "solver.increments": 2}))
+    history = simulate(
+        tiny.with_overrides({"mesh.element": "quadratic", "solver.increments": 2, "growth.duration": 50.0})
+    )
     grid = history.to_pyvista()
     assert grid.n_cells == history.mesh.n_cells
     assert set(grid.celltypes) == {int(pyvista.CellType.QUADRATIC_TRIANGLE)}

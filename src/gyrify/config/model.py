@@ -22,6 +22,9 @@ from gyrify.config.words import extra, shorten, show
 from gyrify.errors import ConfigError
 
 NOT_HASHED: Final = frozenset({"output", "limits"})
+# Keys that came later, with their section: at its default such a key is not hashed, so that the hashes of
+# earlier configurations stay.
+LATER: Final = (("mesh", "inversion_resistance"),)
 
 
 class Config(Section):
@@ -192,6 +195,9 @@ class Config(Section):
     def config_hash(self) -> str:
         """SHA-256 (hexadecimal) of the canonical JSON of every value outside `output` and `limits`."""
         hashed = {key: value for key, value in self.to_dict().items() if key not in NOT_HASHED}
+        for name, key in LATER:
+            if hashed[name][key] == sections(type(self))[name].model_fields[key].default:
+                del hashed[name][key]
         text = json.dumps(hashed, sort_keys=True, separators=(",", ":"), allow_nan=False)
         return hashlib.sha256(text.encode("ascii")).hexdigest()
 

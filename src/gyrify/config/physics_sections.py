@@ -140,6 +140,12 @@ class MeshSettings(Section):
     element: Literal["linear", "quadratic", "mean_dilatation"] = setting(
         "linear", "Finite element.", source=f"{PAPER}, Results (3-node triangles)"
     )
+    inversion_resistance: float = setting(
+        0.0,
+        "Stiffness over E_G that keeps quadratic cells from inverting beside integration points; 0: none.",
+        ge=0,
+        le=10,
+    )
     refine: int = setting(0, "Times the whole mesh is refined by halving.", ge=0, le=4)
     refine_cortex: int = setting(0, "Times the cortex alone is refined by halving.", ge=0, le=4)
 

@@ -84,6 +84,8 @@ class ElasticEnergy:
     ) -> Evaluation:
         """Sum over cells, with a pressure [Pa] added to dW/dJ of each, and all stretched by F33 along z."""
         k = self.kinematics
+        if k.curved is not None and k.curved.first_inverted(u) is not None:
+            return Evaluation(np.inf)
         gradient = np.zeros_like(u) if order >= 1 else np.empty((0, u.shape[1]))
         values = np.zeros(self.pattern.pattern.rows.size if order >= 2 else 0)
         cells = (
@@ -104,6 +106,7 @@ class ElasticEnergy:
         return Evaluation(value, gradient if order >= 1 else None, hessian)
 
     def max_step(self, u: FloatArray, du: FloatArray) -> float:
-        """Largest fraction of du, at most 1, before a cell is inverted."""
+        """Largest fraction of du, at most 1, before a cell is inverted anywhere in it."""
         k = self.kinematics
-        return float(self._kernels.largest_step(u, du, k.cells, k.base, k.gradients))
+        step = float(self._kernels.largest_step(u, du, k.cells, k.base, k.gradients))
+        return step if k.curved is None else step * k.curved.largest_step(u, step * du)

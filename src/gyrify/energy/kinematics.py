@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gyrify.energy.curved import CurvedCells
 from gyrify.energy.element import reference_element
 from gyrify.energy.kernels import elastic_kernels
 from gyrify.energy.term import FloatArray, IntArray
@@ -30,6 +31,8 @@ class Simplices:
         Cell of each integration point, in order.
     n_points : int
         Number of points of the mesh.
+    curved : CurvedCells or None
+        What F is like between the integration points; None where it is constant over each cell.
     """
 
     cells: IntArray
@@ -37,6 +40,7 @@ class Simplices:
     volumes: FloatArray
     cell: IntArray
     n_points: int
+    curved: CurvedCells | None = None
 
     @staticmethod
     def of(cell_points: FloatArray, cells: IntArray, n_points: int) -> Simplices:
@@ -52,6 +56,7 @@ class Simplices:
             volumes=volumes.ravel(),
             cell=np.repeat(np.arange(n_cells), weights.size),
             n_points=n_points,
+            curved=CurvedCells.of(cell_points, cells),
         )
 
     @property
@@ -79,11 +84,26 @@ class Simplices:
         return np.asarray(sums / volumes.reshape(-1, *([1] * (values.ndim - 1))))
 
     def volume_ratio(self, u: FloatArray) -> FloatArray:
-        """(n_cells,) in-plane det F of a state u [mm]."""
+        """(n,) in-plane det F of a state u [mm] at the integration points."""
         n_cells, n_nodes, n_dim = self.gradients.shape
         ratio = np.empty(n_cells)
         elastic_kernels(n_dim, n_nodes).volume_ratio(u, self.cells, self.gradients, ratio)
         return ratio
+
+    def least_volume_ratio(self, u: FloatArray) -> FloatArray:
+        """(n_cells,) least in-plane det F of a state u [mm] over the whole of each cell."""
+        return self.volume_ratio(u) if self.curved is None else self.curved.least_ratio(u)
+
+    def first_inverted(self, u: FloatArray) -> int | None:
+        """Number of the first cell that is inverted anywhere in it in a state u [mm]; None if none is."""
+        if self.curved is not None:
+            return self.curved.first_inverted(u)
+        inverted = np.flatnonzero(~(self.volumes * self.volume_ratio(u) > 0.0))
+        return int(inverted[0]) if inverted.size else None
+
+    def largest_of_cells(self, values: FloatArray) -> FloatArray:
+        """(n_cells,) largest of (n,) values at the integration points of each cell."""
+        return np.asarray(values.reshape(int(self.cell[-1]) + 1, -1).max(axis=1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,6 +126,8 @@ class ElasticKinematics:
         Reference volume per unit thickness [mm^2].
     n_points : int
         Number of points of the mesh.
+    curved : CurvedCells or None
+        As in `Simplices`.
     """
 
     cells: IntArray
@@ -115,6 +137,7 @@ class ElasticKinematics:
     J_g: FloatArray
     volumes: FloatArray
     n_points: int
+    curved: CurvedCells | None = None
 
     @staticmethod
     def of(simplices: Simplices, F_g: FloatArray, F_g33: FloatArray, F33: float = 1.0) -> ElasticKinematics:
@@ -142,6 +165,7 @@ class ElasticKinematics:
             J_g=det * F_g33,
             volumes=simplices.volumes,
             n_points=simplices.n_points,
+            curved=simplices.curved,
         )
 
     def deformation(self, u: FloatArray) -> FloatArray:

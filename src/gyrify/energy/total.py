@@ -138,3 +138,7 @@ class TotalEnergy:
         for term in self.terms:
             step = min(step, term.max_step(u, step * du) * step)
         return step
+
+    def limiting(self, u: FloatArray, du: FloatArray) -> EnergyTerm:
+        """The term that admits the least of du."""
+        return min(self.terms, key=lambda term: term.max_step(u, du))

@@ -138,7 +138,8 @@ def point_of(base: Config, mechanics: Mechanics, case: Case, seed: int) -> Point
 def _as_many_nodes(base: Config, mechanics: Mechanics) -> dict[str, object]:
     """Half as many columns and layers where quadratic triangles take the place of others.
 
-    They have a node in the middle of each edge, so that the paper's 216 nodes around stay 216.
+    They have a node in the middle of each edge, so that the paper's 216 nodes around stay 216. Folded, they
+    need a resistance to inversion.
     """
     mesh = base.mesh
     if mechanics.element != "quadratic" or mesh.element == "quadratic":
@@ -147,6 +148,7 @@ def _as_many_nodes(base: Config, mechanics: Mechanics) -> dict[str, object]:
         "mesh.n_around": mesh.n_around // 2,
         "mesh.n_layers": (mesh.n_layers + 1) // 2,
         "mesh.n_cortex_layers": max(mesh.n_cortex_layers // 2, 2),
+        "mesh.inversion_resistance": 0.1,
     }
 
 

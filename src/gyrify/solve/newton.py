@@ -155,7 +155,7 @@ def _line_search(
     du = system.scatter(direction).reshape(at.u.shape)
     step = total.max_step(at.u, du)
     if step < SMALLEST_STEP:
-        return 0.0, at, Result.BLOCKED
+        return 0.0, at, Result.BLOCKED if total.limiting(at.u, du).is_barrier else Result.INVERTING
     noise = ROUNDING * abs(at.value)
     while step >= SMALLEST_STEP:
         trial = Iterate.at(total, at.u + step * du, system)

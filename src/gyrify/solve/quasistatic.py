@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from gyrify.errors import SolveError
+from gyrify.errors import InvertedCellError, SolveError
 from gyrify.solve.increment import Increments, is_factor_kept
 from gyrify.solve.path import Path
 from gyrify.solve.problem import TICKS, Problem, State, Stepping
@@ -46,6 +46,8 @@ def grow(
     ------
     SolveError
         If an increment fails at the smallest size; the message names the reason.
+    InvertedCellError
+        The same, where a cell that is inverted, or would be, is the reason.
     """
     increments = _taken_up(problem, stepping, state, recall or _nothing_before, watch)
     if state.index == 0:
@@ -100,7 +102,8 @@ def _advance(increments: Increments, state: State) -> State:
         work = replace(work, rejected=work.rejected + 1)
         if stepping.is_smallest(span):
             time = state.position / stepping.end
-            raise SolveError(
+            failure = InvertedCellError if solution.result.is_inversion else SolveError
+            raise failure(
                 f"Growth stopped at {time:.4%} of the duration: {solution.result.message} "
                 f"(residual {solution.residual:.3g} Pa mm, wanted {stepping.criterion.force:.3g}).",
                 solution.result.advice,

@@ -21,12 +21,17 @@ class Result(Enum):
         "Raise solver.increments or mesh.n_around, or use a larger solver.tolerance.",
     )
     BLOCKED = (
-        "no step is possible: the contour would cross itself, or a cell would be inverted",
+        "no step is possible: the contour would cross itself",
         "Raise mesh.n_around, or contact.activation_fraction.",
     )
+    INVERTING = (
+        "no step is possible: a cell would be inverted, in a part of it at least",
+        'With mesh.element = "quadratic" set mesh.inversion_resistance = 0.1: nothing else resists that '
+        "between integration points. With another element raise mesh.n_around or solver.increments.",
+    )
     INADMISSIBLE = (
-        "growth inverts a cell before the tissue can follow",
-        "Raise solver.increments.",
+        "a cell of the state that the increment starts from is inverted",
+        "Run again from the start with `gyrify run`: this state cannot be continued.",
     )
     SINGULAR = (
         "the stiffness matrix is singular",
@@ -36,6 +41,11 @@ class Result(Enum):
         "the straight path between two accepted states would cross the contour",
         "Raise solver.increments.",
     )
+
+    @property
+    def is_inversion(self) -> bool:
+        """Whether an inverted cell is the reason."""
+        return self in (Result.INVERTING, Result.INADMISSIBLE)
 
     @property
     def message(self) -> str:

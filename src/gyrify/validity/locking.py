@@ -19,9 +19,9 @@ def locking(config: Config) -> list[str]:
     if config.mesh.element != "linear" or highest < LOCKING_POISSON_RATIO:
         return []
     can_average = config.growth.out_of_plane != "generalised"
-    advice = (
-        'mesh.element = "mean_dilatation" or "quadratic"' if can_average else 'mesh.element = "quadratic"'
-    )
+    advice = 'mesh.element = "quadratic" and mesh.inversion_resistance = 0.1'
+    if can_average:
+        advice = f'mesh.element = "mean_dilatation", or {advice}'
     key = "poisson_ratio" if material.poisson_ratio == highest else "poisson_ratio_white"
     return [
         f'mesh.element = "linear" locks at material.{key} = {highest:g}: linear triangles that hardly change '

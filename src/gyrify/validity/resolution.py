@@ -264,6 +264,8 @@ def _mesh_values(config: Config, element: str, n_around: int, layers: int) -> di
         "n_layers": layers * mesh.n_layers,
         "n_cortex_layers": layers * mesh.n_cortex_layers,
     }
+    if element == "quadratic":  # or their cells would invert where folds close
+        values["inversion_resistance"] = max(mesh.inversion_resistance, 0.1)
     return {f"mesh.{key}": value for key, value in values.items() if value != getattr(mesh, key)}
 
 

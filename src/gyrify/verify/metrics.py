@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from gyrify.config.words import shorten
 from gyrify.errors import HistoryError
-from gyrify.measuring import earlier_rows
+from gyrify.measuring import earlier_rows, point_extremes
 from gyrify.store.derived import read_metrics
 from gyrify.store.history import History
 from gyrify.summary import earlier_summary, summarise
@@ -47,20 +47,37 @@ def check_metrics(
         except HistoryError as damaged:
             yield Check("metrics.csv", False, str(damaged))
             return
-        check = _compare("metrics.csv", stored, _numbered(rows), scale)
+        check = _compare("metrics.csv", stored, _numbered(history, stored, rows), scale)
         if not check.passed:
-            check = _by_earlier_rules(check, stored, _numbered(earlier_rows(history)), scale)
+            earlier = _numbered(history, stored, earlier_rows(history))
+            check = _by_earlier_rules(check, stored, earlier, scale)
         yield check
     if summary is not None:
-        check = _compare("summary.json", *_comparable(history, summary, summarise(history)), scale)
+        found = _with_stored_volumes(history, -1, summary, summarise(history))
+        check = _compare("summary.json", *_comparable(history, summary, found), scale)
         if not check.passed:
-            earlier = {**earlier_summary(history), "warnings": summary.get("warnings")}
+            earlier = _with_stored_volumes(history, -1, summary, earlier_summary(history))
+            earlier["warnings"] = summary.get("warnings")
             check = _by_earlier_rules(check, *_comparable(history, summary, earlier), scale)
         yield check
 
 
-def _numbered(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    return {str(n): row for n, row in enumerate(rows)}
+def _numbered(history: History, stored: dict[str, Any], rows: list[dict[str, Any]]) -> dict[str, Any]:
+    return {str(n): _with_stored_volumes(history, n, stored.get(str(n)), row) for n, row in enumerate(rows)}
+
+
+def _with_stored_volumes(history: History, index: int, stored: Any, found: dict[str, Any]) -> dict[str, Any]:
+    """Recomputed numbers of a state, with the smallest J of the integration points where that was stored.
+
+    Earlier versions knew no other.
+    """
+    names = ("min_J", "min_J_elastic")
+    if history.slice.simplices.curved is None or not isinstance(stored, dict):
+        return found
+    for extremes in (tuple(found[name] for name in names), point_extremes(history, index)):
+        if all(_is_equal(stored.get(name), J, ROUNDING) for name, J in zip(names, extremes, strict=True)):
+            return {**found, **dict(zip(names, extremes, strict=True))}
+    return found
 
 
 def _by_earlier_rules(check: Check, stored: Any, found: Any, scale: float) -> Check:

@@ -65,8 +65,12 @@ def verify(run: str | Path) -> Verification:
         return Verification(tuple(checks))
     increments, rows = list(reevaluated(history)), metrics_rows(history)
     if increments:
-        checks += _check_increments(history.slice.stepping.criterion.force, increments)
-        checks.append(_check_balance(increments))
+        volumes = list(_check_volumes(increments))
+        if all(check.passed for check in volumes):  # the energy of an inverted cell is infinite
+            checks += _check_forces(history.slice.stepping.criterion.force, increments)
+        checks += volumes
+        if all(check.passed for check in volumes):
+            checks.append(_check_balance(increments))
         checks += _check_symmetry(history)
     if history.config.contact.enabled:
         checks += _check_contact(increments, rows, _jumps(history))
@@ -129,7 +133,7 @@ def _check_hash(history: History, summary: dict[str, Any] | None) -> Check:
     return Check("result hash", True, f"The journal and summary.json agree on {found[:12]}.")
 
 
-def _check_increments(tolerance: float, increments: list[Increment]) -> Iterator[Check]:
+def _check_forces(tolerance: float, increments: list[Increment]) -> Iterator[Check]:
     """Bounds that each increment must keep by itself; ``tolerance`` is that of the residual [Pa mm]."""
     margin = RESIDUAL_MARGIN * tolerance
     residuals = [increment.residual for increment in increments]
@@ -139,10 +143,15 @@ def _check_increments(tolerance: float, increments: list[Increment]) -> Iterator
     yield _at_most("residual", residuals, tolerance + margin, "The largest nodal force [Pa mm]")
     yield _at_most("stored residual", gaps, margin, what)
     yield _at_most("descent", rises, DESCENT_BOUND, "The largest relative rise of the energy")
-    yield _above_zero("volume", [increment.min_J for increment in increments], "The smallest J")
-    yield _above_zero(
-        "elastic volume", [increment.min_J_elastic for increment in increments], "The smallest J_e"
-    )
+
+
+def _check_volumes(increments: list[Increment]) -> Iterator[Check]:
+    """No cell is inverted, anywhere in it."""
+    cells = [increment.smallest_cell for increment in increments]
+    yield _above_zero("volume", [increment.min_J for increment in increments], "The smallest J", cells=cells)
+    cells = [increment.smallest_elastic_cell for increment in increments]
+    least = [increment.min_J_elastic for increment in increments]
+    yield _above_zero("elastic volume", least, "The smallest J_e", cells=cells)
 
 
 def _check_symmetry(history: History) -> Iterator[Check]:
@@ -189,10 +198,13 @@ def _at_most(name: str, values: list[float], bound: float, what: str) -> Check:
     return Check(name, values[at] <= bound, sentence, values[at], bound)
 
 
-def _above_zero(name: str, values: list[float], what: str, first: int = 1) -> Check:
-    """Smallest value of all increments from the ``first`` on, above zero."""
+def _above_zero(
+    name: str, values: list[float], what: str, first: int = 1, cells: list[int] | None = None
+) -> Check:
+    """Smallest value of all increments from the ``first`` on, above zero; in which of the ``cells``."""
     at = int(np.argmin(values))  # a NaN is the smallest
-    sentence = f"{what} is {values[at]:.3g}, in increment {at + first} (allowed: above 0)."
+    place = f"increment {at + first}" if cells is None else f"cell {cells[at]} of increment {at + first}"
+    sentence = f"{what} is {values[at]:.3g}, in {place} (allowed: above 0)."
     return Check(name, values[at] > 0.0, sentence, values[at], 0.0)
 
 
