@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -23,6 +22,7 @@ from gyrify.store.database import RERUN
 from gyrify.store.indices import Index, gathered, state_number
 from gyrify.store.journal import Journal
 from gyrify.store.lock import has_owner
+from gyrify.store.provenance import Provenance
 from gyrify.store.views import Views
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from pyvista import UnstructuredGrid
 
 
-class History(Views):
+class History(Views, Provenance):
     """States of a run in the order of growth; increment 0 is the reference state.
 
     Parameters
@@ -200,11 +200,6 @@ class History(Views):
         return self.journal.result_hash
 
     @property
-    def versions(self) -> dict[str, str]:
-        """Versions of gyrify and of what it computes with."""
-        return dict(json.loads(self.journal.meta("versions", "{}")))
-
-    @property
     def stats(self) -> Stats:
         """Work done."""
         return self.journal.state(len(self) - 1).stats
@@ -218,16 +213,6 @@ class History(Views):
     def wall_s(self) -> float:
         """Time spent solving [s]."""
         return float(sum(self.journal.column("wall_s")))
-
-    @property
-    def linear_solver(self) -> str:
-        """Library that factorised the stiffness matrices."""
-        return self.journal.meta("linear_solver", "unknown")
-
-    @property
-    def contact_library(self) -> str:
-        """What computed contact: ``ipctk``, ``gyrify`` (kernels of its own), or ``none`` where it is off."""
-        return self.journal.meta("contact_library", "ipctk" if self.config.contact.enabled else "none")
 
     @property
     def stable(self) -> bool | None:
