@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from functools import cached_property
 
@@ -20,11 +19,12 @@ from gyrify.store.database import RERUN
 from gyrify.store.indices import Index, gathered, state_number
 from gyrify.store.journal import Journal
 from gyrify.store.lock import has_owner
+from gyrify.store.provenance import Provenance
 from gyrify.store.stability_views import StabilityViews
 from gyrify.store.views import Views
 
 
-class History(Views, StabilityViews):
+class History(Views, StabilityViews, Provenance):
     """States of a run in the order of growth; increment 0 is the reference state.
 
     Parameters
@@ -194,11 +194,6 @@ class History(Views, StabilityViews):
         return self.journal.result_hash
 
     @property
-    def versions(self) -> dict[str, str]:
-        """Versions of gyrify and of what it computes with."""
-        return dict(json.loads(self.journal.meta("versions", "{}")))
-
-    @property
     def stats(self) -> Stats:
         """Work done."""
         return self.journal.state(len(self) - 1).stats
@@ -214,14 +209,5 @@ class History(Views, StabilityViews):
         return float(sum(self.journal.column("wall_s")))
 
     @property
-    def linear_solver(self) -> str:
-        """Library that factorised the stiffness matrices."""
-        return self.journal.meta("linear_solver", "unknown")
-
-    @property
-    def contact_library(self) -> str:
-        """What computed contact: ``ipctk``, ``gyrify`` (kernels of its own), or ``none`` where it is off."""
-        return self.journal.meta("contact_library", "ipctk" if self.config.contact.enabled else "none")
-
     def __repr__(self) -> str:
         return f"History({len(self)} states, {self.fractions[-1]:.0%} grown, {self.status})"
