@@ -55,7 +55,7 @@ def restored(folder: Path) -> None:
 AGAIN = Way("run again with --overwrite", args=(*RUN, "run", "--overwrite"))
 COPY = Way("Restore the file from a copy", args=("resume", "run"), first=restored)
 ELSEWHERE = Way("Choose", args=(*RUN, "elsewhere"))
-MEND = Way("Mend or complete that line", '[growth]\nratio = "1/1.36"')
+MEND = Way("Correct or complete that line", '[growth]\nratio = "1/1.36"')
 
 ADVICE: dict[str, list[Way]] = {
     "negative": default("The default is 3.6", "[growth]\nratio = 3.6"),
@@ -112,7 +112,7 @@ ADVICE: dict[str, list[Way]] = {
     "missing": [Way("Check the path", "seed = 1")],
     "directory": [Way("Name a TOML file", "seed = 1")],
     "truncated": [MEND],
-    "twice": [Way("Mend or complete that line", "seed = 2")],
+    "twice": [Way("Correct or complete that line", "seed = 2")],
     "latin-1": [Way("Save it as UTF-8", "# été")],
     "binary": [MEND],
     "large": [Way("Name a configuration in TOML", "seed = 1")],

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from small_study import GROWTH, study
 
-from gyrify import Config, run_study
+from gyrify import Config, plot, read_results, run_study
 from gyrify.cli import main
 from gyrify.errors import HistoryError
 from gyrify.report import onset_curve as onset_module
@@ -19,6 +19,7 @@ from gyrify.report.phase_diagram import phase_figure
 from gyrify.report.sensitivity import sensitivity_figure
 from gyrify.report.study_data import Cell, Row, cells, varied
 from gyrify.report.study_pictures import write_study_pictures
+from gyrify.study.results import write_results
 
 KEYS = ("growth.ratio", "material.stiffness_ratio")
 PLACES: dict[str, list[tuple[float, float]]] = {
@@ -187,6 +188,16 @@ def test_a_study_that_never_crosses_onset_ends_with_its_json(
         assert said["total"] == 4
         assert str(out / "phase-diagram.png") in said["pictures"]
     assert "phase-diagram" not in study_page(out, "s")  # it draws its own, and does not fail either
+    assert len(plot(out).axes) >= 4
+
+
+def test_results_without_a_row_are_read_and_shown(tmp_path: Path) -> None:
+    write_results(tmp_path, [], {})
+    assert read_results(tmp_path).num_rows == 0
+    assert write_study_pictures(tmp_path) == []
+    assert '"runs":[]' in study_page(tmp_path, "s")
+    with pytest.raises(HistoryError, match="No run of the study"):
+        plot(tmp_path)
 
 
 def test_a_picture_that_cannot_be_written_does_not_take_the_results_with_it(

@@ -99,7 +99,7 @@ def plot(
     at = None if at is None else real_number("at", at)
     width_mm = None if width_mm is None else real_number("width_mm", width_mm)
     _check(what, len(others), at, stress, width_mm)
-    if not isinstance(run, History) and is_study(run):
+    if not isinstance(run, History) and is_study(as_path("run", run)):
         return _seen(study_plot(as_path("run", run), what, len(others), at, width_mm))
     states = show([run, *others], at)
     if what == "stress":
