@@ -208,6 +208,5 @@ class History(Views, StabilityViews, Provenance):
         """Time spent solving [s]."""
         return float(sum(self.journal.column("wall_s")))
 
-    @property
     def __repr__(self) -> str:
         return f"History({len(self)} states, {self.fractions[-1]:.0%} grown, {self.status})"
