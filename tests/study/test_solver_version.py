@@ -13,7 +13,18 @@ from gyrify import versions
 
 SOURCE = Path(gyrify.__file__).parent
 # Read on the way to a result without a part in it: how runs are kept, limited, told, and fail.
-NO_PART = {"errors", "versions", "limits", "store", "notebook", "markup", "units"}
+NO_PART = {
+    "errors",
+    "versions",
+    "limits",
+    "store",
+    "notebook",
+    "markup",
+    "units",
+    "arguments",
+    "compiled",
+    "scratch",
+}
 
 
 def imported(part: str) -> set[str]:
