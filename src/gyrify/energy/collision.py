@@ -75,7 +75,7 @@ def contact_library(name: LibraryName = "auto") -> LibraryName:
     if name == OWN:
         return OWN
     try:
-        from gyrify.energy import toolkit  # noqa: F401
+        from gyrify.energy.toolkit import ToolkitContour  # noqa: F401
     except ImportError:
         if name != "auto":
             raise
