@@ -19,8 +19,10 @@ from gyrify.validity.resolution import LATE, finer_mesh, mesh_onset, resolution
 
 def advised(sentence: str) -> dict[str, Any]:
     """Values that a warning says to set."""
-    found = re.findall(r'(mesh\.\w+) = ("?)(\w+)\2', sentence.split("Set ")[1])
-    return {key: value if quote else int(value) for key, quote, value in found}
+    found = re.findall(r'(mesh\.\w+) = ("?)(\w+(?:\.\d+)?)\2', sentence.split("Set ")[1])
+    return {
+        key: value if quote else float(value) if "." in value else int(value) for key, quote, value in found
+    }
 
 
 CASES = {
