@@ -25,9 +25,14 @@ from gyrify.summary import measure_state
 
 KINDS = {
     "ring": {},
-    "quadratic": {"mesh.element": "quadratic", "mesh.n_around": 36},
+    "quadratic": {"mesh.element": "quadratic", "mesh.n_around": 36, "mesh.inversion_resistance": 0.1},
     "strip": {"geometry.shape": "strip", "mesh.n_around": 36},
-    "quadratic strip": {"geometry.shape": "strip", "mesh.n_around": 24, "mesh.element": "quadratic"},
+    "quadratic strip": {
+        "geometry.shape": "strip",
+        "mesh.n_around": 24,
+        "mesh.element": "quadratic",
+        "mesh.inversion_resistance": 0.1,
+    },
 }
 
 
