@@ -68,7 +68,7 @@ def test_the_first_step_is_the_largest_admissible_one(largest: float) -> None:
 
 def test_less_room_than_a_billionth_of_a_step_is_none() -> None:
     blocked = minimised(MadeUp(lambda x: -x, lambda _: -1.0, largest=0.9e-9))
-    assert blocked.result is Result.BLOCKED
+    assert blocked.result in (Result.BLOCKED, Result.INVERTING)
     assert blocked.u[0, 0] == 0.0
 
 

@@ -16,7 +16,8 @@ from gyrify.paper.cases import all_cases
 from gyrify.store import History
 from gyrify.summary import summarise
 from gyrify.validity import config_warnings, run_warnings
-from gyrify.validity.ranges import RANGES, contour_spacing, table
+from gyrify.validity.lengths import check_lengths
+from gyrify.validity.ranges import RANGES, check_ranges, contour_spacing, table
 
 PAGE = Path(__file__).parents[2] / "docs" / "limits.md"
 Capture = pytest.CaptureFixture[str]
@@ -73,9 +74,14 @@ def test_every_range_is_left_by_some_case() -> None:
 @pytest.mark.parametrize("name", preset_names())
 def test_presets_and_the_scans_of_the_paper_are_not_warned_of(name: str) -> None:
     base = Config.preset(name)
-    assert config_warnings(base) == []
+    assert _unusual(base) == []
     for case in all_cases():
-        assert config_warnings(base.with_overrides(case.overrides)) == [], str(case)
+        assert _unusual(base.with_overrides(case.overrides)) == [], str(case)
+
+
+def _unusual(config: Config) -> list[str]:
+    """What is said of values alone, not of the mesh."""
+    return [*check_ranges(config), *check_lengths(config)]
 
 
 def test_the_default_of_every_shape_is_not_warned_of() -> None:
