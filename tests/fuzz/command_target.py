@@ -47,7 +47,7 @@ _LEFT_OUT = (
     "gyrify.report.animate.animate",
     "gyrify.verify.verify",
     "gyrify.store.export._write_vtu",
-    "gyrify.store.export._write_xdmf",
+    "gyrify.store.export.write_xdmf",
     "gyrify.run.Run.grow",
 )
 

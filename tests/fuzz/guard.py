@@ -18,6 +18,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
+from unittest import mock
 from urllib.parse import unquote, urlsplit
 
 from gyrify.errors import GyrifyError
@@ -211,7 +212,7 @@ def guarded(
     begun = time.process_time()
     kind, told = "read", ""
     try:
-        with confined(*folders), time_limit(limit):
+        with confined(*folders), mock.patch("tempfile.tempdir", str(folders[0])), time_limit(limit):
             read(data)
     except GyrifyError as error:
         kind, told = ("refused", str(error)) if is_clear(str(error)) else ("message", repr(str(error)))

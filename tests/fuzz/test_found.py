@@ -205,7 +205,7 @@ def test_nothing_in_gyrify_opens_hdf5_to_read() -> None:
     sources = [file.read_text("utf-8") for file in Path(gyrify.__file__).parent.rglob("*.py")]
     opened = [line for text in sources for line in text.splitlines() if "h5py.File(" in line]
     assert len(opened) == 2
-    assert all('"w")' in line for line in opened)
+    assert all('"w", locking=False)' in line for line in opened)
 
 
 def test_journals_that_a_run_makes_pass(run: Path) -> None:

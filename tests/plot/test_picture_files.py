@@ -50,7 +50,7 @@ def test_by_default_the_picture_lies_in_the_run_folder(runs, capsys: Capture) ->
         main(["plot", str(runs["strip"]), "--json", "--width", "120", "--dpi", "60", "--at", "1000/4"]) == 0
     )
     written = json.loads(capsys.readouterr().out)
-    assert written == {"what": "folded", "files": [str(runs["strip"] / "plot-folded.png")]}
+    assert written == {"what": "folded", "files": [str(runs["strip"] / "plot-folded-at-1000-4.png")]}
     assert Image.open(written["files"][0]).width == pytest.approx(120 / MM_PER_INCH * 60, abs=1)
 
 

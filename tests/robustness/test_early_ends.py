@@ -11,8 +11,9 @@ import matplotlib.text
 import pytest
 from random_runs import STOPPED, name_of
 
-from gyrify import Config, History, Study, detection, run_study
+from gyrify import Config, History, Study, run_study
 from gyrify.cli import main
+from gyrify.onset import detector
 from gyrify.outputs import folded_picture
 from gyrify.report.figures import save_figure
 from gyrify.solve import branch
@@ -66,7 +67,7 @@ def no_way_back(patch: Patch) -> None:
     def settle(*_: Any) -> None:
         raise branch._lost("no step along its lowest mode lowers the energy", "Tighten solver.tolerance.")
 
-    patch.setattr(detection, "settle", settle)
+    patch.setattr(detector, "settle", settle)
 
 
 def nothing(patch: Patch) -> None:

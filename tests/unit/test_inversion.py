@@ -13,7 +13,7 @@ from slices import TINY
 from gyrify.config import Config
 from gyrify.energy.curved import RATIO_TOLERANCE, CurvedCells
 from gyrify.energy.elastic import CellPattern, ElasticEnergy
-from gyrify.energy.inversion import ACTIVATION, InversionBarrier, forms, least_place
+from gyrify.energy.inversion import ACTIVATION, InversionBarrier, coefficients
 from gyrify.energy.kinematics import ElasticKinematics, Simplices
 from gyrify.energy.total import TotalEnergy
 from gyrify.errors import InvertedCellError
@@ -135,22 +135,33 @@ def test_a_minimum_beyond_an_inversion_is_not_accepted() -> None:
     assert 0.0 < determinants(STRAIGHT + held.u).min() < ACTIVATION
 
 
-def test_the_derivatives_of_the_resistance_are_those_of_its_energy(rng: np.random.Generator) -> None:
-    faces = {0: 0, 1: 0}
-    while min(faces.values()) < 10:
-        X = nodes(int(rng.integers(2**32)), 0.03)
+def resistance_of(X: np.ndarray) -> InversionBarrier:
+    curved = CurvedCells(CELLS, X[None])
+    return InversionBarrier(curved, 3.0, CellPattern(CELLS, 2), np.zeros(1, dtype=np.int64))
+
+
+def resisting(rng: np.random.Generator) -> tuple[InversionBarrier, np.ndarray]:
+    """A random cell, and a state in which a part of it has nearly vanished."""
+    while True:
+        term = resistance_of(nodes(int(rng.integers(2**32)), 0.03))
         u = rng.uniform(-0.28, 0.28, (6, 2)) * rng.uniform(0.3, 1.0)
-        curved = CurvedCells(CELLS, X[None])
-        if not 0.02 < curved.least_ratio(u)[0] < 0.17:
-            continue
-        term = InversionBarrier(curved, 3.0, CellPattern(CELLS, 2), np.zeros(1, dtype=np.int64))
-        _, place, along = least_place(forms((X + u)[None]))
-        assert determinants(X + u, place)[0] == pytest.approx(determinants(X + u).min(), abs=2e-3)
+        least = coefficients(term.curved.points + u).min() / (2.0 * term.curved.areas[0])
+        if 0.01 < least < 0.9 * ACTIVATION:
+            return term, u
+
+
+def dense(hessian) -> np.ndarray:
+    H = np.zeros((12, 12))
+    H[hessian.pattern.rows, hessian.pattern.cols] = hessian.values
+    return H + np.triu(H, 1).T
+
+
+def test_the_derivatives_of_the_resistance_are_those_of_its_energy(rng: np.random.Generator) -> None:
+    for _ in range(10):
+        term, u = resisting(rng)
         found, h = term.evaluate(u, 2), 1e-6
         assert found.value > 0.0
-        H = np.zeros((12, 12))
-        H[found.hessian.pattern.rows, found.hessian.pattern.cols] = found.hessian.values
-        H += np.triu(H, 1).T
+        H = dense(found.hessian)
         for k in range(12):
             d = h * np.eye(12)[k].reshape(6, 2)
             up, down = term.evaluate(u + d, 1), term.evaluate(u - d, 1)
@@ -158,11 +169,34 @@ def test_the_derivatives_of_the_resistance_are_those_of_its_energy(rng: np.rando
             assert found.gradient.ravel()[k] == pytest.approx(slope, rel=1e-4, abs=1e-5 * abs(H).max())
             column = (up.gradient - down.gradient).ravel() / (2 * h)
             assert H[k] == pytest.approx(column, abs=1e-4 * abs(H).max())
-        psd = term.evaluate(u, 2, project_psd=True).hessian
-        P = np.zeros((12, 12))
-        P[psd.pattern.rows, psd.pattern.cols] = psd.values
-        assert np.linalg.eigvalsh(P + np.triu(P, 1).T).min() > -1e-8 * abs(P).max()
-        faces[int(along.any())] += 1
+        P = dense(term.evaluate(u, 2, project_psd=True).hessian)
+        assert np.linalg.eigvalsh(P).min() > -1e-8 * abs(P).max()
+
+
+def test_the_resistance_has_no_kinks() -> None:
+    """Of a flattened cell, the corner that is the least changes as the node on a side moves along it.
+
+    A kink, as the least of several values has, is a jump of the force across any short way over it.
+    """
+    term, flat = resistance_of(STRAIGHT), STRAIGHT * [0.0, -0.9]
+    way = np.zeros((6, 2))
+    way[3] = 0.02, 0.001
+    forces = np.array([term.evaluate(flat + t * way, 1).gradient for t in np.linspace(-1.0, 1.0, 401)])
+    jumps = np.abs(np.diff(forces, axis=0)).max(axis=(1, 2))
+    assert jumps.max() <= 0.02 * np.abs(forces).max()
+
+
+def test_coefficients_are_bounds_of_the_determinant(rng: np.random.Generator) -> None:
+    """And nearer ones than those of the whole cell; the corners and middles of the sides are among them."""
+    for _ in range(50):
+        x = nodes(int(rng.integers(2**32)), 0.3)
+        found, values = coefficients(x[None])[0], determinants(x)
+        assert found.min() <= values.min() + 1e-12
+        assert found.max() >= values.max() - 1e-12
+        places = np.concatenate([np.eye(3), 0.5 * (np.eye(3) + np.roll(np.eye(3), -1, axis=0))])
+        assert found[:6] == pytest.approx(determinants(x, places))
+        whole = CurvedCells(CELLS, x[None])._coefficients(np.zeros((6, 2)))[0, 0]
+        assert found.min() >= whole - 1e-12
 
 
 def test_resistance_is_nothing_at_rest_and_infinite_at_inversion() -> None:

@@ -13,12 +13,13 @@ from gyrify.reevaluation import Increment
 from gyrify.solve.newton import Criterion
 from gyrify.solve.problem import TICKS, Stepping
 from gyrify.verify.metrics import _differences
-from gyrify.verify.recheck import _check_balance, _check_contact, _check_increments, _jumps
+from gyrify.verify.recheck import _check_balance, _check_contact, _check_forces, _check_volumes, _jumps
 from gyrify.verify.result import Check
 
 TOLERANCE = 1e-3
 FINE = Increment(
-    residual=0.9e-3, stored_residual=0.9e-3, rise=-0.1, min_J=0.5, min_J_elastic=0.5, is_path_free=True,
+    residual=0.9e-3, stored_residual=0.9e-3, rise=-0.1, min_J=0.5, min_J_elastic=0.5,
+    smallest_cell=7, smallest_elastic_cell=8, is_path_free=True,
     elastic=60.0, contact=1.0, dissipated=39.0, work=100.0, work_error=0.0,
 )  # fmt: skip
 
@@ -26,12 +27,12 @@ FINE = Increment(
 def passed(name: str, **changes: float) -> bool:
     """Whether the check of that name lets three increments pass, the middle one of them changed."""
     increments = [FINE, replace(FINE, **changes), FINE]  # type: ignore[arg-type]
-    checks = {check.name: check for check in _check_increments(TOLERANCE, increments)}
+    found = (*_check_forces(TOLERANCE, increments), *_check_volumes(increments))
+    checks = {check.name: check for check in found}
     others = {key: check for key, check in checks.items() if key != name}
     assert len(others) == 4
-    found = checks[name]
-    assert "increment 2" in found.sentence or found.passed
-    return found.passed
+    assert "increment 2" in checks[name].sentence or checks[name].passed
+    return checks[name].passed
 
 
 @pytest.mark.parametrize(

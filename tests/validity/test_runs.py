@@ -9,8 +9,10 @@ from validity_cases import COARSE, PUBLISHED, case
 from gyrify.simulation import simulate
 from gyrify.store.history import History
 from gyrify.summary import summarise
+from gyrify.validity.before import config_warnings
 from gyrify.validity.collapse import COLLAPSED, collapse
 from gyrify.validity.folding import sawtooth, smooth_against_theory
+from gyrify.validity.inversion import inversion
 from gyrify.validity.locking import locking
 
 QUICK = {"solver.increments": 25, "stability.detect": False}
@@ -92,6 +94,17 @@ def test_a_sawtooth_is_told_and_not_counted(serrated: History) -> None:
     assert sentence in summary["warnings"]
     assert "not folds" in sentence
     assert smooth_against_theory(serrated, summary) == []
+
+
+def test_quadratic_cells_that_may_be_inverted_are_told_before_the_run() -> None:
+    """Only where folds are expected, and nothing resists."""
+    folding = case({"mesh.element": "quadratic"})
+    (sentence,) = inversion(folding)
+    assert sentence in config_warnings(folding)
+    assert "mesh.inversion_resistance = 0.1" in sentence
+    assert inversion(folding.replace(**{"mesh.inversion_resistance": 0.1})) == []
+    assert inversion(folding.replace(**{"mesh.element": "linear"})) == []
+    assert inversion(folding.replace(**{"growth.duration": 100.0})) == []
 
 
 def test_locking_is_told_before_the_run(serrated: History) -> None:

@@ -98,7 +98,12 @@ def test_alternating_diagonals_do_not_keep_it() -> None:
 @pytest.mark.parametrize(
     "change",
     [
-        {"mesh.element": "quadratic", "mesh.n_around": 48, "growth.duration": 400.0},
+        {
+            "mesh.element": "quadratic",
+            "mesh.inversion_resistance": 0.1,
+            "mesh.n_around": 48,
+            "growth.duration": 400.0,
+        },
         {"mesh.element": "mean_dilatation", "growth.law": "tangential"},
         {"mesh.refine_cortex": 1, "mesh.n_around": 48},
         {"geometry.shape": "strip", "mesh.n_around": 50},

@@ -12,7 +12,8 @@ lower bound, which subdivision drives to the least value with second order.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from gyrify.compiled import njit
 
 # The functions below write into their last arguments; numba compiles them without annotations.
 # mypy: disable-error-code="no-untyped-def"

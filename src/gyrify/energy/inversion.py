@@ -1,12 +1,14 @@
 r"""Resistance to the inversion of curved cells, where their integration points do not feel it.
 
 .. math::
-   E(u) = \sum_c A_c \, k_r \; b(m_c / m_0), \quad
-   m_c = \min_{\xi \in c} \det \frac{\partial x}{\partial \xi} / 2 A_c, \quad
+   E(u) = k_r \sum_c A_c \sum_k b(D_{ck} / d_0), \quad d_0 = 2 A_c m_0, \quad
    b(s) = -(s - 1)^2 \ln s \; (s < 1), \; 0 \text{ otherwise}
 
-with the reference area A_c: nothing as long as no part of a cell has shrunk below m_0 of the cell's reference
-area, and infinite where a part of it vanishes. It is to cells what `gyrify.energy.contact` is to the contour.
+with the reference area A_c and the Bernstein coefficients D_ck of det(dx/dxi) on the four triangles between
+the corners and the middles of the sides of a cell, which are bounds of it (see `gyrify.energy.bernstein`): it
+is nothing as long as no part of a cell has shrunk below m_0 of its reference size, and infinite before a part
+of it vanishes. All coefficients have their share, since the least of them alone has kinks, on which Newton's
+method comes to a halt. It is to cells what `gyrify.energy.contact` is to the contour.
 """
 
 from __future__ import annotations
@@ -55,32 +57,33 @@ class InversionBarrier:
         """Energy [Pa mm^2], gradient [Pa mm], Hessian [Pa]; see `EnergyTerm`."""
         near = self.curved.smaller_than(u, ACTIVATION)
         x = self.curved.points[near] + u[self.curved.cells[near]]
-        size = 2.0 * self.curved.areas[near]
-        least, place, along = least_place(forms(x))
-        acts = ~(least >= ACTIVATION * size)
+        scale = 1.0 / (ACTIVATION * 2.0 * self.curved.areas[near])
+        s = scale[:, None] * coefficients(x)
+        acts = ~(s.min(axis=1, initial=1.0) >= 1.0)
+        near, x, s, scale = near[acts], x[acts], s[acts], scale[acts]
         gradient = np.zeros_like(u) if order >= 1 else None
-        if not acts.any():
+        if not near.size:
             return Evaluation(0.0, gradient, self._no_hessian if order >= 2 else None)
-        s = least[acts] / (ACTIVATION * size[acts])
         if not s.min() > 0.0:
             return Evaluation(np.inf)
-        weight, log = 0.5 * self.stiffness * size[acts], np.log(s)
-        value = -float(np.sum(weight * (s - 1.0) ** 2 * log))
+        weight, log, below = self.stiffness * self.curved.areas[near][:, None], np.log(s), s < 1.0
+        value = -float(np.sum(np.where(below, weight * (s - 1.0) ** 2 * log, 0.0)))
         if gradient is None:
             return Evaluation(value)
-        forces, stiffness = derivatives(x[acts], place[acts], along[acts])
-        per = 1.0 / (ACTIVATION * size[acts])
-        slope = per * weight * (-2.0 * (s - 1.0) * log - (s - 1.0) ** 2 / s)
-        np.add.at(gradient, self.curved.cells[near[acts]], (slope[:, None] * forces).reshape(-1, 6, 2))
+        slope = np.where(below, weight * (-2.0 * (s - 1.0) * log - (s - 1.0) ** 2 / s), 0.0) * scale[:, None]
+        changes = coefficient_slopes(x)
+        np.add.at(gradient, self.curved.cells[near], np.einsum("nk,nkai->nai", slope, changes))
         if order < 2:
             return Evaluation(value, gradient)
-        bend = per**2 * weight * (-2.0 * log - 4.0 * (s - 1.0) / s + (s - 1.0) ** 2 / s**2)
-        matrices = slope[:, None, None] * stiffness
-        matrices += bend[:, None, None] * forces[:, :, None] * forces[:, None, :]
+        bend = -2.0 * log - 4.0 * (s - 1.0) / s + (s - 1.0) ** 2 / s**2
+        bend = np.where(below, weight * bend, 0.0) * scale[:, None] ** 2
+        changes = changes.reshape(-1, FORMS.shape[0], 12)
+        matrices = np.einsum("nk,nkp,nkq->npq", bend, changes, changes, optimize=True)
+        matrices += np.einsum("nk,kab,ij->naibj", slope, FORMS, _TURN).reshape(-1, 12, 12)
         if project_psd:
             lengths, axes = np.linalg.eigh(matrices)
             matrices = np.einsum("cik,ck,cjk->cij", axes, np.maximum(lengths, 0.0), axes)
-        return Evaluation(value, gradient, self._hessian(near[acts], matrices))
+        return Evaluation(value, gradient, self._hessian(near, matrices))
 
     def _hessian(self, acting: IntArray, matrices: FloatArray) -> Hessian:
         p, q = np.triu_indices(matrices.shape[1])
@@ -94,69 +97,6 @@ class InversionBarrier:
         return 1.0
 
 
-def forms(x: FloatArray) -> FloatArray:
-    """(n, 3, 3) forms of det(dx/dxi) in the area coordinates; see `gyrify.energy.bernstein`."""
-    xi, eta = (
-        np.stack([x.transpose(0, 2, 1) @ node_slopes(corner)[:, axis] for corner in np.eye(3)], axis=1)
-        for axis in (0, 1)
-    )
-    one = xi[:, :, None, 0] * eta[:, None, :, 1] - xi[:, :, None, 1] * eta[:, None, :, 0]
-    return np.asarray(0.5 * (one + one.transpose(0, 2, 1)))
-
-
-def least_place(M: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Least values of forms on the triangle, where, and the direction in which that place is free.
-
-    It is a corner (which is not free), or on a side along which the form is convex. Inside it is never where
-    it is positive: a determinant is a difference of two products, whose form has two positive eigenvalues at
-    most.
-
-    Parameters
-    ----------
-    M : (n, 3, 3) float array
-        The forms.
-
-    Returns
-    -------
-    least : (n,) float array
-    place, along : (n, 3) float arrays
-        Area coordinates, and a change of them.
-    """
-    values = np.diagonal(M, axis1=1, axis2=2)
-    at = values.argmin(axis=1)
-    least, place, along = values.min(axis=1), np.eye(3)[at], np.zeros((at.size, 3))
-    for a, b in _EDGES:
-        bend = M[:, a, a] - 2.0 * M[:, a, b] + M[:, b, b]
-        share = np.where(bend > 0.0, M[:, a, a] - M[:, a, b], 0.0) / np.where(bend > 0.0, bend, 1.0)
-        value = M[:, a, a] - bend * share**2
-        lower = (share > 0.0) & (share < 1.0) & (value < least)
-        direction = np.eye(3)[b] - np.eye(3)[a]
-        least = np.where(lower, value, least)
-        place = np.where(lower[:, None], np.eye(3)[a] + share[:, None] * direction, place)
-        along = np.where(lower[:, None], direction, along)
-    return least, place, along
-
-
-def derivatives(x: FloatArray, place: FloatArray, along: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """First (n, 12) and second (n, 12, 12) derivatives of the least det(dx/dxi) of cells by their nodes.
-
-    The first one is that at a fixed place, since the value does not change along the side; the second has the
-    motion of the place in it.
-    """
-    slopes = node_slopes(place)
-    at = np.einsum("cai,caj->cij", x, slopes)
-    cross = slopes[:, :, None, 0] * slopes[:, None, :, 1]
-    turned = np.array([[0.0, 1.0], [-1.0, 0.0]])
-    second = np.einsum("cab,ij->caibj", cross - cross.transpose(0, 2, 1), turned).reshape(-1, 12, 12)
-    change = node_slopes(along) - node_slopes(np.zeros(3))
-    bend = np.einsum("cai,caj->cij", x, change)
-    mixed = _cofactors(change, at) + _cofactors(slopes, bend)
-    free = np.asarray(along.any(axis=1))
-    convexity = np.where(free, 2.0 * np.linalg.det(bend), 1.0)
-    motion = mixed[:, :, None] * mixed[:, None, :] / convexity[:, None, None]
-    return _cofactors(slopes, at), second - np.where(free[:, None, None], motion, 0.0)
-
-
 def node_slopes(L: FloatArray) -> FloatArray:
     """(..., 6, 2) dN_a / dxi at (..., 3) area coordinates, in which they are affine."""
     corners = (4.0 * L - 1.0)[..., None] * _SLOPES
@@ -164,8 +104,32 @@ def node_slopes(L: FloatArray) -> FloatArray:
     return np.concatenate([corners, np.stack(between, axis=-2)], axis=-2)
 
 
-def _cofactors(slopes: FloatArray, at: FloatArray) -> FloatArray:
-    """(n, 12) derivative of det(sum_a x_a (x) slopes_a) by x, where that matrix is ``at``."""
-    first = slopes[:, :, 0] * at[:, 1, 1, None] - slopes[:, :, 1] * at[:, 1, 0, None]
-    second = slopes[:, :, 1] * at[:, 0, 0, None] - slopes[:, :, 0] * at[:, 0, 1, None]
-    return np.stack([first, second], axis=2).reshape(-1, 12)
+def _forms() -> FloatArray:
+    """(15, 6, 6) antisymmetric forms K of the coefficients, D_k = sum_ab x_a K_kab y_b of the nodes (x, y).
+
+    The coefficient of two corners V and W of a small triangle is the polar form of the determinant there.
+    """
+    corners = np.eye(3)
+    middles = [0.5 * (corners[a] + corners[b]) for a, b in _EDGES]
+    halves = [(corners[n], middles[m]) for m, edge in enumerate(_EDGES) for n in edge]
+    within = [(middles[a], middles[b]) for a, b in _EDGES]
+    found = []
+    for V, W in [(L, L) for L in (*corners, *middles)] + halves + within:
+        v, w = node_slopes(V), node_slopes(W)
+        half = 0.5 * (np.outer(v[:, 0], w[:, 1]) + np.outer(w[:, 0], v[:, 1]))
+        found.append(half - half.T)
+    return np.array(found)
+
+
+FORMS: Final = _forms()
+_TURN: Final = np.array([[0.0, 1.0], [-1.0, 0.0]])
+
+
+def coefficients(x: FloatArray) -> FloatArray:
+    """(n, 15) Bernstein coefficients of det(dx/dxi) of cells with (n, 6, 2) nodes."""
+    return np.asarray(np.einsum("na,kab,nb->nk", x[:, :, 0], FORMS, x[:, :, 1], optimize=True))
+
+
+def coefficient_slopes(x: FloatArray) -> FloatArray:
+    """(n, 15, 6, 2) derivatives of the coefficients by the nodes."""
+    return np.asarray(np.einsum("kab,ij,nbj->nkai", FORMS, _TURN, x, optimize=True))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
+from gyrify.validity.inversion import inversion
 from gyrify.validity.lengths import check_lengths
 from gyrify.validity.locking import locking
 from gyrify.validity.ranges import check_ranges
@@ -18,6 +19,7 @@ CHECKS: Final[tuple[Callable[[Config], list[str]], ...]] = (
     check_lengths,
     resolution,
     locking,
+    inversion,
 )
 
 
