@@ -101,7 +101,7 @@ def test_with_the_critical_mode_everything_says_what_the_scene_shows(
     box = opened.page.get_by_label("critical mode", exact=True)
     box.click()
     assert opened.run("document.querySelector('.choice input:checked').value") == "region"
-    assert opened.page.locator(".bar-title").inner_text() == "tissue"
+    opened.wait("document.querySelector('.bar-title').innerText === 'tissue'")
     time = opened.page.locator("output.time").inner_text()
     assert time.startswith("onset, t ")
     assert float(re.findall(r"[\d.]+", time)[0]) == pytest.approx(folded.onset.growth_time, rel=1e-3)

@@ -13,6 +13,7 @@ import pytest
 from small_study import TEXT, end_when, rows, start
 
 from gyrify import Study, read_results, run_study
+from gyrify.study.archive import write_record
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 
@@ -35,6 +36,19 @@ def whole(file: Path) -> list[dict[str, Any]]:
 
 def finished(out: Path) -> list[Path]:
     return [path for path in out.glob("runs/*/point.json") if '"summary"' in path.read_text()]
+
+
+def test_a_point_that_was_stored_when_the_signal_came_is_in_the_results(
+    file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stored_and_cut_off(*arguments: Any) -> None:
+        write_record(*arguments)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("gyrify.study.book.write_record", stored_and_cut_off)
+    with pytest.raises(KeyboardInterrupt):
+        run_study(Study.from_toml(file), tmp_path, workers=1)
+    assert read_results(tmp_path).num_rows == len(finished(tmp_path)) == 1
 
 
 @pytest.mark.parametrize(

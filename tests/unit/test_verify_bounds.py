@@ -12,9 +12,10 @@ import pytest
 from gyrify.reevaluation import Increment
 from gyrify.solve.newton import Criterion
 from gyrify.solve.problem import TICKS, Stepping
-from gyrify.verify.metrics import _differences
+from gyrify.verify.metrics import LATER_KEYS, WORDED, _comparable, _differences
 from gyrify.verify.recheck import _check_balance, _check_contact, _check_forces, _check_volumes, _jumps
 from gyrify.verify.result import Check
+from gyrify.versions import versions
 
 TOLERANCE = 1e-3
 FINE = Increment(
@@ -135,3 +136,19 @@ def test_numbers_are_the_same_up_to_rounding(stored: object, found: object, is_s
 def test_a_number_that_one_side_lacks_is_a_difference() -> None:
     assert len(list(_differences({"a": 1, "b": 2}, {"a": 1}, "", 1.0))) == 1
     assert len(list(_differences({"a": 1}, {"a": 1, "b": 2}, "", 1.0))) == 1
+
+
+def test_keys_that_an_older_version_did_not_write_are_left_out_and_no_others() -> None:
+    now: dict[str, Any] = {key: 1 for key in LATER_KEYS | WORDED if "." not in key}
+    now |= {"onset": {"growth_time": 3.0, "kind": "fold", "visible_delay": 2.0}}
+    now |= {"solver": {"name": "x", "contact_library": "y"}, "gi": {"closing": 1.2}}
+    earlier = {"onset": {"growth_time": 3.0}, "solver": {"name": "x"}, "gi": {"closing": 1.2}}
+    earlier |= {"stability_note": "in other words"}
+    this: Any = SimpleNamespace(versions=versions())
+    stored, found = _comparable(this, earlier, now)
+    assert stored == found == {key: earlier[key] for key in ("onset", "solver", "gi")}
+    assert _comparable(this, now, now) == (now, now)
+    without = {**now, "onset": None}  # a run that stays stable has no onset to lack keys
+    assert _comparable(this, without, without) == (without, without)
+    stored, found = _comparable(this, {**earlier, "onset": {}}, now)
+    assert list(_differences(stored, found, "", 1.0)) == ["onset.growth_time = missing, not 3.0"]

@@ -53,6 +53,7 @@ class Book:
                     for outcome in found:
                         self._note(outcome)
         finally:
+            self._take_back()
             self._write()
         wall_s = time.perf_counter() - self.begun
         return StudyResult(self.folder, self.points, self.records, self.computed, wall_s)
@@ -66,6 +67,11 @@ class Book:
             return None
         needs_journal = self.keep == "all" and record.summary is not None
         return None if needs_journal and not (target / JOURNAL).is_file() else record
+
+    def _take_back(self) -> None:
+        """Note what is stored and not yet noted: a signal may come between the two."""
+        found = {point.key: self._known(point, retry=False) for point in self.unknown}
+        self.records.update({key: record for key, record in found.items() if record is not None})
 
     def _note(self, outcome: Outcome) -> None:
         """Store a point that has ended."""

@@ -21,7 +21,7 @@ from gyrify.versions import versions
 METRIC_BOUND: Final = 1e-9
 # Largest difference of what is zero but for rounding; of lengths, in a body as large as the standard slice.
 ROUNDING: Final = 1e-12
-# Keys of a summary that older versions did not write.
+# Keys of a summary that older versions did not write (a dot: inside of a table), and what they worded otherwise.
 LATER_KEYS: Final = frozenset(
     {
         "warnings",
@@ -32,8 +32,12 @@ LATER_KEYS: Final = frozenset(
         "relaxed",
         "parameters",
         "units",
+        "onset.kind",
+        "onset.visible_delay",
+        "solver.contact_library",
     }
 )
+WORDED: Final = frozenset({"warnings", "stability_note"})
 
 
 def check_metrics(
@@ -96,10 +100,28 @@ def _comparable(
     history: History, stored: dict[str, Any], found: dict[str, Any]
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Both summaries, but for sentences and keys of another version of gyrify."""
-    if history.versions.get("gyrify") == versions()["gyrify"] and stored.keys() >= LATER_KEYS:
+    later = {key for key in LATER_KEYS if _lacks(stored, key)}
+    if history.versions.get("gyrify") == versions()["gyrify"] and not later:
         return stored, found
-    left_out = {"warnings", *(LATER_KEYS - stored.keys())}
-    return tuple({k: v for k, v in summary.items() if k not in left_out} for summary in (stored, found))  # type: ignore[return-value]
+    left_out = later | WORDED
+    return _without(stored, left_out), _without(found, left_out)
+
+
+def _lacks(table: dict[str, Any], key: str) -> bool:
+    """Whether a key is missing in a table, or in a table inside of it that is there."""
+    outer, _, inner = key.partition(".")
+    if not inner:
+        return outer not in table
+    return isinstance(table.get(outer), dict) and inner not in table[outer]
+
+
+def _without(table: dict[str, Any], keys: set[str], place: str = "") -> dict[str, Any]:
+    """The table, and those inside of it, but for some keys."""
+    return {
+        name: _without(value, keys, f"{place}{name}.") if isinstance(value, dict) else value
+        for name, value in table.items()
+        if f"{place}{name}" not in keys
+    }
 
 
 def _compare(name: str, stored: dict[str, Any], found: dict[str, Any], scale: float) -> Check:
