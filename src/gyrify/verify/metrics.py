@@ -21,7 +21,7 @@ from gyrify.versions import versions
 METRIC_BOUND: Final = 1e-9
 # Largest difference of what is zero but for rounding; of lengths, in a body as large as the standard slice.
 ROUNDING: Final = 1e-12
-# Keys of a summary that older versions did not write (a dot: inside of a table), and what they worded otherwise.
+# Keys of a summary that older versions did not write (a dot: inside of a table).
 LATER_KEYS: Final = frozenset(
     {
         "warnings",
@@ -37,6 +37,7 @@ LATER_KEYS: Final = frozenset(
         "solver.contact_library",
     }
 )
+# Sentences that they worded otherwise.
 WORDED: Final = frozenset({"warnings", "stability_note"})
 
 
