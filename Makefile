@@ -2,6 +2,8 @@
 PYTHON ?= python3
 VENV ?= .venv
 NEWEST ?= .venv-newest
+# every how many of the slow tests are run
+SAMPLE ?= 1
 BIN = $(VENV)/bin
 
 .PHONY: run test check slow newest mutants docs bench clean
@@ -16,7 +18,7 @@ test: $(VENV)/.test
 	$(BIN)/python -m pytest -m "not slow" -n auto
 
 slow: $(VENV)/.test
-	$(BIN)/python -m pytest -m slow -n auto
+	$(BIN)/python -m pytest -m slow -n auto --sample $(SAMPLE)
 
 # the newest versions of all dependencies, without the pins: PYTHON=python3.13 make newest
 newest:

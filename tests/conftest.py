@@ -43,3 +43,18 @@ def folded(folding: Config) -> History:
 def overlapping(folding: Config) -> History:
     """The same run without contact."""
     return simulate(folding.replace(**{"contact.enabled": False}))
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--sample", type=int, default=1, help="run every n-th of the slow tests")
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out slow tests but every n-th, as CI does to stay short; `make slow` runs them all."""
+    every = config.getoption("--sample")
+    slow = [item for item in items if item.get_closest_marker("slow")]
+    left_out = {item.nodeid for number, item in enumerate(slow) if number % every}
+    if left_out:
+        config.hook.pytest_deselected(items=[item for item in items if item.nodeid in left_out])
+        items[:] = [item for item in items if item.nodeid not in left_out]

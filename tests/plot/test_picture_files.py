@@ -115,6 +115,6 @@ def test_a_signal_leaves_no_half_of_a_file(runs, tmp_path: Path, number: int) ->
             _, err = process.communicate(timeout=60)
         if process.returncode != 0:
             break
-    assert process.returncode == 130
+    assert process.returncode == 130, err
     assert "Interrupted" in err
     assert not list(tmp_path.iterdir())
