@@ -204,3 +204,13 @@ def test_every_module_can_be_imported_on_its_own() -> None:
         name = ".".join(file.relative_to(SOURCE.parent).with_suffix("").parts)
         if not name.endswith("__main__") and not name.endswith("pardiso"):
             assert importlib.import_module(name.removesuffix(".__init__"))
+
+
+def test_kernels_are_compiled_by_our_njit_alone() -> None:
+    """That of numba makes a folder ``~`` for a user without a home, and fails where nothing can be written."""
+    found = [
+        path.relative_to(SOURCE).as_posix()
+        for path in SOURCE.rglob("*.py")
+        if "from numba import" in (text := path.read_text("utf-8")) or "\nimport numba" in text
+    ]
+    assert found == ["compiled.py"]
