@@ -207,7 +207,7 @@ def test_every_module_can_be_imported_on_its_own() -> None:
 
 
 def test_kernels_are_compiled_by_our_njit_alone() -> None:
-    """That of numba makes a folder ``~`` for a user without a home, and fails where nothing can be written."""
+    """That of numba makes a folder ``~`` for a user without a home, and fails where it cannot write."""
     found = [
         path.relative_to(SOURCE).as_posix()
         for path in SOURCE.rglob("*.py")
