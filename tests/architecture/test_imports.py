@@ -168,6 +168,15 @@ def test_files_and_functions_are_short(file: Path) -> None:
             assert _length(node) <= LONGEST_FUNCTION, node.name
 
 
+def test_files_of_tests_and_tools_are_short() -> None:
+    root = Path(__file__).resolve().parents[2]
+    files = [file for folder in ("tests", "tools", "benchmarks") for file in (root / folder).rglob("*.py")]
+    files = [file for file in files if ".venv" not in file.parts]
+    assert len(files) > 100
+    long = [file.name for file in files if len(file.read_text(encoding="utf-8").splitlines()) > LONGEST_FILE]
+    assert long == []
+
+
 def _length(node: ast.FunctionDef) -> int:
     """Lines from the signature to the end, the docstring (a table of parameters, often) not counted."""
     first = node.body[0]

@@ -16,6 +16,24 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
+from gyrify.report.html.study import study_page
+from gyrify.study import Study, run_study
+
+BASE = {
+    "preset": "reference-slice",
+    "mesh": {"n_around": 48, "n_layers": 6, "n_cortex_layers": 2},
+    "solver": {"increments": 4},
+    "growth": {"duration": 600.0},
+}
+DESIGN = {
+    "kind": "grid",
+    "parameter": [
+        {"key": "growth.ratio", "values": [1.5, 36.0]},
+        {"key": "material.stiffness_ratio", "values": [0.5, 2.0]},
+        {"key": "geometry.cortical_thickness", "values": [1.5]},
+        {"key": "dissipation.number", "values": [1.3, 2.6]},
+    ],
+}
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 ARGUMENTS = (
     "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
@@ -114,3 +132,11 @@ def chromium() -> Iterator[Any]:
 def browser(chromium: Any, tmp_path: Path) -> Browser:
     """Opens reports from a folder of the test's own."""
     return Browser(chromium, tmp_path)
+
+
+@pytest.fixture(scope="session")
+def study(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The page of a small study."""
+    folder = tmp_path_factory.mktemp("study") / "ratios"
+    run_study(Study.from_mapping({"base": BASE, "design": DESIGN}), folder, workers=1)
+    return study_page(folder, "ratios")

@@ -5,27 +5,18 @@ from __future__ import annotations
 import json
 import shutil
 import sqlite3
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
+from forging import edit_row, failures, flip_a_bit, nudge, write_outputs
 
 from gyrify.config import Config
 from gyrify.errors import HistoryError
-from gyrify.measuring import point_extremes
 from gyrify.reevaluation import reevaluated
 from gyrify.simulation import simulate
-from gyrify.store import History
-from gyrify.store.integrity import digest
-from gyrify.summary import summarise, volume_extremes, write_metrics, write_summary
-from gyrify.verify import Verification, verify
+from gyrify.verify import verify
 from gyrify.verify.recheck import ENERGY_BOUND
-
-
-def write_outputs(history: History, folder: Path) -> None:
-    write_summary(summarise(history), folder / "summary.json")
-    write_metrics(history, folder / "metrics.csv")
 
 
 @pytest.fixture(scope="module")
@@ -41,34 +32,6 @@ def stored(folding: Config, tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def copy(stored: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(stored, tmp_path / "run"))
-
-
-def failures(verification: Verification) -> set[str]:
-    return {check.name for check in verification.checks if not check.passed}
-
-
-def edit_row(folder: Path, number: int, change: Callable[[bytearray], None], *, fix_digest: bool) -> None:
-    """Change a stored displacement; a careful forger mends the checksum of the row too."""
-    with sqlite3.connect(folder / "journal.sqlite") as database:
-        row = list(database.execute("SELECT * FROM increments WHERE number = ?", (number,)).fetchone())
-        blob = bytearray(row[10])
-        change(blob)
-        checksum = digest(tuple(row[:9]), bytes(blob), row[11]) if fix_digest else row[12]
-        database.execute(
-            "UPDATE increments SET displacement = ?, digest = ? WHERE number = ?",
-            (bytes(blob), checksum, number),
-        )
-    database.close()
-
-
-def flip_a_bit(blob: bytearray) -> None:
-    blob[len(blob) // 2] ^= 1
-
-
-def nudge(blob: bytearray) -> None:
-    u = np.frombuffer(blob, dtype="<f8").copy()
-    u[-1] += 1e-3
-    blob[:] = u.tobytes()
 
 
 def test_a_run_with_contact_passes_every_check(stored: Path):
@@ -140,80 +103,6 @@ def test_a_forged_state_is_caught_without_any_derived_file(copy: Path):
     (copy / "summary.json").unlink()
     (copy / "metrics.csv").unlink()
     assert "residual" in failures(verify(copy))
-
-
-@pytest.fixture
-def quadratic(tiny: Config, tmp_path: Path) -> Path:
-    """Folder of a run of quadratic cells."""
-    history = simulate(
-        tiny.replace(**{"mesh.element": "quadratic", "mesh.inversion_resistance": 0.1}), tmp_path / "run"
-    )
-    write_outputs(history, tmp_path / "run")
-    history.journal.close()
-    return tmp_path / "run"
-
-
-def test_a_corner_that_is_inverted_between_integration_points_is_found(quadratic: Path):
-    """The node on a side of cell 200 moves near its end, which turns the corner there over."""
-    history = History.load(quadratic)
-    mesh, u = history.mesh, history.state_vector(2)
-    start, end, node = mesh.cells[200, [0, 1, 3]]
-    x = mesh.points + u
-    move = 0.78 * x[start] + 0.22 * x[end] - x[node]
-    u[node] += move
-    J = history.slice.volume_ratio(u)
-    assert J.min() > 0.0
-    history.journal.close()
-
-    def turn(blob: bytearray) -> None:
-        blob[:] = u.astype("<f8").tobytes()
-
-    edit_row(quadratic, 2, turn, fix_digest=True)
-    verification = verify(quadratic)
-    found = {check.name: check for check in verification.checks}
-    assert {"volume", "elastic volume"} <= failures(verification)
-    assert found["volume"].sentence.startswith("The smallest J is -")
-    assert "in cell 200 of increment 2" in found["volume"].sentence
-    # the energy of an inverted cell is infinite, so that nothing is said of forces and energies
-    assert not {"residual", "descent", "energy balance"} & found.keys()
-
-
-def test_the_smallest_j_of_integration_points_that_earlier_versions_stored_still_passes(quadratic: Path):
-    history = History.load(quadratic)
-    point, whole = point_extremes(history), volume_extremes(history)
-    assert whole[0] < point[0] - 1e-3
-    path = quadratic / "summary.json"
-    summary = json.loads(path.read_text())
-    assert summary["min_J"] == pytest.approx(whole[0], rel=1e-12)
-    summary["min_J"], summary["min_J_elastic"] = point
-    path.write_text(json.dumps(summary))
-    assert "summary.json" not in failures(verify(quadratic))
-    summary["min_J"] += 1e-6
-    path.write_text(json.dumps(summary))
-    assert "summary.json" in failures(verify(quadratic))
-
-
-def test_the_smallest_j_is_that_of_whole_cells(quadratic: Path):
-    """Against the determinants at a lattice of places in every cell."""
-    history = History.load(quadratic)
-    mesh, J_g = history.mesh, history.slice.volume_growth(500.0).reshape(-1, 3)[:, 0]
-    slopes = reference_slopes()
-    X, x = mesh.cell_points, mesh.cell_points + history.displacement()[mesh.cells]
-    J = np.linalg.det(np.einsum("cai,qaj->cqij", x, slopes)) / np.linalg.det(
-        np.einsum("cai,qaj->cqij", X, slopes)
-    )
-    found = volume_extremes(history)
-    assert found == pytest.approx((J.min(), (J / J_g[:, None]).min()), abs=2e-3)
-    assert found[0] <= J.min() + 1e-9
-
-
-def reference_slopes() -> np.ndarray:
-    """(n, 6, 2) slopes of the quadratic shape functions at a lattice."""
-    L = np.array([(i, j, 60 - i - j) for i in range(61) for j in range(61 - i)]) / 60.0
-    slope = np.array([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])
-    corners = [(4 * L[:, a, None] - 1) * slope[a] for a in range(3)]
-    between = [4 * (L[:, a, None] * slope[b] + L[:, b, None] * slope[a]) for a, b in ((0, 1), (1, 2), (2, 0))]
-    return np.stack(corners + between, axis=1)
 
 
 def test_a_missing_increment_is_noticed(copy: Path):
