@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
@@ -59,7 +60,7 @@ def expected_crossings(config: Config, parameter: str, values: Sequence[float]) 
         return None
 
 
-class _Judge:
+class _Judge(ABC):
     """Whether the exact smooth state of a value is unstable."""
 
     def __init__(self, config: Config, parameter: str) -> None:
@@ -69,8 +70,9 @@ class _Judge:
         """Configuration of a value."""
         return configured(self.config, self.parameter, value)
 
+    @abstractmethod
     def __call__(self, value: float) -> bool:
-        raise NotImplementedError
+        """Whether the smooth state of a value is unstable."""
 
 
 class _RingJudge(_Judge):
