@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 from shlex import quote
@@ -94,8 +95,9 @@ def known_run(config: Config, folder: Path) -> KnownRun | None:
     """
     if not (folder / JOURNAL).exists():
         return None
-    journal = Journal.open(folder / JOURNAL, read_only=True)
-    stored, status = Config.from_toml(journal.meta("config")), journal.meta("status", "running")
+    with closing(Journal.open(folder / JOURNAL, read_only=True)) as journal:
+        stored, status = Config.from_toml(journal.meta("config")), journal.meta("status", "running")
+        result_hash = journal.result_hash
     if stored.config_hash != config.config_hash:
         raise HistoryError(
             f"The folder {folder} already holds a run of another configuration: "
@@ -103,7 +105,7 @@ def known_run(config: Config, folder: Path) -> KnownRun | None:
             f"Continue that run with `gyrify resume {quote(str(folder))}`, replace it with --overwrite, "
             "or choose another folder.",
         )
-    summary = _own_summary(folder, journal.result_hash) if status == "completed" else None
+    summary = _own_summary(folder, result_hash) if status == "completed" else None
     return KnownRun(folder, status, _changes(stored, config), summary)
 
 

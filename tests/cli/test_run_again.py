@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import gyrify
+from gyrify import outputs
 from gyrify.cli import main
 from gyrify.config import Config
 from gyrify.errors import ConfigError, HistoryError
@@ -40,6 +41,22 @@ def half_run(config: Config, folder: Path) -> None:
 
     with suppress(KeyboardInterrupt), new_run(config, folder) as run:
         run.grow([interrupt])
+
+
+def test_a_command_closes_the_run_though_somebody_holds_it(
+    toml: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else files of a database in use stay in the folder until Python collects its garbage."""
+    held, write = [], outputs.write_outputs
+
+    def hold(history: History, folder: Path) -> dict[str, object]:
+        held.append(history)
+        return write(history, folder)
+
+    monkeypatch.setattr(outputs, "write_outputs", hold)
+    assert main(["run", str(toml), "--out", str(tmp_path / "run"), "--quiet"]) == 0
+    assert len(held) == 1
+    assert sorted(file.name for file in (tmp_path / "run").glob("journal*")) == ["journal.sqlite"]
 
 
 def test_the_same_run_again_is_done_already(toml: Path, tmp_path: Path, capsys: Capture) -> None:

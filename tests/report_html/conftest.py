@@ -69,7 +69,8 @@ class Opened:
             time.sleep(0.02)
 
     def pixels(self) -> NDArray[np.int64]:
-        """(height, width, 3) colours of the scene, drawn now."""
+        """(height, width, 3) colours of the scene, drawn now; before, its size must be known."""
+        self.wait("gyrify.panel.viewer.camera.width >= 2")
         script = "() => { const v = gyrify.panel.viewer; v.drawNow(true); return v.canvas.toDataURL(); }"
         png = base64.b64decode(self.run(script).split(",")[1])
         return np.asarray(Image.open(io.BytesIO(png)).convert("RGB"), dtype=np.int64)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Sequence
-from contextlib import AbstractContextManager, suppress
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Annotated, Any
@@ -107,7 +107,7 @@ def _carry_out(
     from gyrify.outputs import write_outputs, write_state
     from gyrify.validity import config_warnings
 
-    with begin as run:
+    with _closed(begin) as run:
         interrupts.guard(folder)
         for sentence in filter(None, (note, run.note)):
             if not quiet:
@@ -132,6 +132,14 @@ def _carry_out(
     elif summary["status"] != "interrupted":
         _report(summary, folder)
     return INTERRUPTED if interrupts.requested else _EXIT_CODES[summary["status"]]
+
+
+@contextmanager
+def _closed(begin: AbstractContextManager[Run]) -> Iterator[Run]:
+    """The run; its journal is closed at the end, so that the folder has no files of a database in use."""
+    with ExitStack() as last, begin as run:
+        last.callback(run.history.journal.close)
+        yield run
 
 
 def _tell_done(known: KnownRun, config: Config, json: bool, quiet: bool) -> int:
