@@ -86,6 +86,7 @@ class Opened:
     def hover(self, x: float, y: float) -> str:
         """Text of the tooltip over a point of the plane; empty where there is none."""
         px, py = self.run(f"gyrify.panel.viewer.camera.toScreen({x!r}, {y!r})")
+        self.run("gyrify.panel.viewer.canvas.scrollIntoView({ block: 'center' })")
         box = self.page.locator("canvas").bounding_box()
         self.page.mouse.move(box["x"] + px, box["y"] + py)
         tip = self.page.locator(".tooltip")

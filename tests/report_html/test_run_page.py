@@ -216,6 +216,11 @@ def test_numbers_and_settings_are_those_of_the_run(opened, folded: History) -> N
     summary = summarise(folded)
     numbers = opened.page.locator(".numbers").inner_text()
     assert f"{summary['gi']['closing']:.3f}" in numbers
+    checked = opened.page.locator(".checked")
+    assert checked.is_visible()
+    assert (
+        checked.inner_text() == f"{summary['converged']['sentence']} Check: {summary['converged']['command']}"
+    )
     opened.run("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
     settings = opened.page.locator("table.settings").inner_text()
     assert re.search(r"mesh\.n_around\s+168", settings)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -89,6 +90,29 @@ def test_the_phase_diagram_shows_every_point(opened, folder: Path) -> None:
         assert any(told in label and f"{row['gi_closing']:.2f}" in label for label in labels)
     opened.page.get_by_label("quantity").select_option("n_gyri")
     assert "gyri" in opened.page.locator(".phase-mark").first.get_attribute("aria-label")
+
+
+def test_warnings_and_unchecked_meshes_are_told_with_the_numbers(opened, folder: Path) -> None:
+    rows = read_results(folder).to_pylist()
+    said = [row["warnings"].splitlines() for row in rows]
+    assert any(said)
+    assert column(opened, "warnings") == [str(len(warnings)) for warnings in said]
+    notice = opened.page.locator("details.notice")
+    notice.locator("summary").click()
+    assert f"{sum(map(bool, said))} of {len(rows)} runs have warnings" in notice.inner_text()
+    counts = Counter(warning for warnings in said for warning in warnings)
+    told = notice.locator("li").all_text_contents()
+    assert all(f"{n} of 6 runs: {warning}" in told for warning, n in counts.items() if n > 1)
+    assert len(told) == 13
+    assert told[-1] == f"and {len(counts) - 12} more: open a run to see its own"
+    assert opened.page.locator(".checked").inner_text() == "Meshes: 6 of 6 not checked."
+    assert opened.page.get_by_label("quantity").input_value() == "gi_closing"
+    opened.page.locator(".thumbnail").nth(3).click()
+    opened.wait("Boolean(gyrify.panel)")
+    dialog = opened.page.locator("dialog")
+    assert dialog.locator(".checked").inner_text().startswith("Whether this mesh is converged is not known")
+    shown = dialog.locator(".notice").all_text_contents()
+    assert all(any(warning in text for text in shown) for warning in said[3])
 
 
 def test_a_thumbnail_opens_its_run(opened, folder: Path) -> None:

@@ -38,7 +38,8 @@ def about(history: History, name: str, summary: dict[str, Any]) -> dict[str, Any
         "reason": summary["reason"],
         "advice": summary["advice"],
         "warnings": summary["warnings"],
-        "note": " ".join(filter(None, (summary["stability_note"], _checked(summary)))),
+        "mesh": {key: summary["converged"][key] for key in ("converged", "sentence", "command")},
+        "note": summary["stability_note"],
         "numbers": numbers(summary),
         "onset": summary["onset"],
         "settings": settings(config),
@@ -48,12 +49,6 @@ def about(history: History, name: str, summary: dict[str, Any]) -> dict[str, Any
         "toml": config.to_toml(),
         "command": f"gyrify run config.toml --out {quote(name)}",
     }
-
-
-def _checked(summary: dict[str, Any]) -> str:
-    """Whether the mesh is known to be converged for the numbers, and how to find out."""
-    found = summary["converged"]
-    return f"{found['sentence']} Check: {found['command']}"
 
 
 def subtitle(config: Config) -> str:

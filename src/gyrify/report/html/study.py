@@ -10,7 +10,7 @@ from gyrify.config.table import plain
 from gyrify.config.words import decimals
 from gyrify.report.html.colours import colour_maps
 from gyrify.report.html.page import STUDY_SCRIPTS, page
-from gyrify.report.html.study_runs import described_run
+from gyrify.report.html.study_runs import described_run, warnings_of
 from gyrify.report.study_data import Row, axis_label, numeric, varied
 from gyrify.study import read_results
 
@@ -75,42 +75,34 @@ def study_page(folder: Path, name: str) -> str:
 def _columns(rows: Sequence[Row], keys: Sequence[str]) -> list[dict[str, Any]]:
     """What the table shows: what varies, then what came of it."""
     numbers = set(numeric(rows, keys))
-    columns = [
-        {
-            "key": key,
-            "label": axis_label(key),
-            "decimals": None,
-            "is_number": key in numbers,
-            "is_given": True,
-        }
-        for key in keys
-    ]
+    columns = [_column(key, axis_label(key), is_number=key in numbers, is_given=True) for key in keys]
+    if any(map(warnings_of, rows)):
+        columns.append(_column("n_warnings", "warnings"))
     if rows and rows[0].get("phenotype") is not None:
-        columns.append(
-            {
-                "key": "phenotype",
-                "label": "phenotype",
-                "decimals": None,
-                "is_number": False,
-                "is_given": False,
-            }
-        )
+        columns.append(_column("phenotype", "phenotype", is_number=False))
     return columns + [
-        {
-            "key": key,
-            "label": label,
-            "decimals": usual and decimals((row.get(key) for row in rows), usual),
-            "is_number": True,
-            "is_given": False,
-        }
+        _column(key, label, usual and decimals((row.get(key) for row in rows), usual))
         for key, label, usual in _QUANTITIES
         if any(row.get(key) is not None for row in rows)
     ]
 
 
+def _column(
+    key: str, label: str, decimals: int | None = None, *, is_number: bool = True, is_given: bool = False
+) -> dict[str, Any]:
+    return {
+        "key": key,
+        "label": label,
+        "decimals": decimals,
+        "is_number": is_number,
+        "is_given": is_given,
+    }
+
+
 def _values(row: Row, keys: Sequence[str]) -> dict[str, Any]:
     """Values of the table's columns in one row."""
     found = {key: row[key] if isinstance(row[key], int | float) else plain(row[key]) for key in keys}
+    found["n_warnings"] = len(warnings_of(row))
     return found | {key: row.get(key) for key in ("phenotype", *(key for key, *_ in _QUANTITIES))}
 
 

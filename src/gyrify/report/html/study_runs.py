@@ -45,6 +45,8 @@ def described_run(folder: Path, row: Row, budget: int) -> tuple[dict[str, Any], 
     (dict, str)
     """
     about: dict[str, Any] = {key: row[key] for key in ("status", "reason", "advice")}
+    about["warnings"] = warnings_of(row)
+    about["mesh"] = None
     try:
         point = final_state(folder, row["key"])
         about |= {"subtitle": subtitle(point.config), "toml": point.config.to_toml()}
@@ -52,12 +54,19 @@ def described_run(folder: Path, row: Row, budget: int) -> tuple[dict[str, Any], 
         about["outline"] = outline(point.mesh, point.points)
     except HistoryError as fault:
         return {"subtitle": "", "toml": "", "outline": None, **about, "missing": str(fault)}, ""
+    if found := point.summary.get("converged"):
+        about["mesh"] = {key: found[key] for key in ("converged", "sentence", "command")}
     about |= {"onset": point.summary["onset"], "plots": _plots(point), "command": _command(point)}
     if budget <= 0:
         return about, ""
     frames, plans = _frames(point)
     about["frames"], payload = packed_frames(point.mesh, frames, _mode(point), plans, budget)
     return about, payload
+
+
+def warnings_of(row: Row) -> list[str]:
+    """What a reader of a run's numbers must not overlook; results of old studies have none."""
+    return str(row.get("warnings") or "").splitlines()
 
 
 def outline(mesh: Mesh, points: FloatArray) -> dict[str, Any]:

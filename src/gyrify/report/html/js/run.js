@@ -9,7 +9,7 @@ async function showRun({ run, colours }) {
   const page = document.getElementById("page");
   const themeSwitch = createThemeSwitch(() => window.gyrify.panel && window.gyrify.panel.viewer.redraw());
   const place = element("main", { class: "main" });
-  page.replaceChildren(createHeader(run, themeSwitch), ...createNotices(run), createNumbers(run), place,
+  page.replaceChildren(createHeader(run, themeSwitch), ...createNotices(run), createNumbers(run), createChecked(run), place,
     createSettings(run), createSolver(run), createRerun(run), createHints(run));
   try {
     const panel = await createPanel(run, "payload-0", colours);

@@ -19,7 +19,7 @@ function openRun(study, index, colours) {
   const run = study.runs[index];
   const panels = [];
   const place = element("div", {});
-  const content = [createNotices({ warnings: [], grown: grownPart(run), ...run }), place, createRunFooter(run)];
+  const content = [createNotices({ grown: grownPart(run), ...run }), createChecked(run), place, createRunFooter(run)];
   const dialog = openDialog(run.title, content, () => panels);
   if (!run.payload) {
     place.append(element("div", { class: "large-outline" }, createOutline(run.outline, run.title)),

@@ -5,7 +5,7 @@ const PHASE_NARROWEST = 280;
 
 function createPhase(study, colours, onOpen) {
   const choices = { x: study.axes[0], y: study.axes[1] };
-  const quantities = study.columns.filter((column) => !column.is_given && column.is_number);
+  const quantities = study.columns.filter((column) => !column.is_given && column.is_number && column.key !== "n_warnings");
   choices.quantity = quantities[0] && quantities[0].key;
   const picture = element("div", { class: "phase-picture" });
   const bar = element("div", { class: "phase-bar" });

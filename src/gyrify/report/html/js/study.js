@@ -1,6 +1,7 @@
 // The page of a study.
 
 const report = JSON.parse(document.getElementById("document").textContent);
+const MOST_WARNINGS = 12;
 // For scripts and tests: what the page shows.
 window.gyrify = { report };
 
@@ -38,12 +39,40 @@ function createStudyHeader(study, themeSwitch) {
 }
 
 function createStudyNotices(study) {
+  return [createEarly(study), createWarnings(study), createMeshes(study)].filter(Boolean);
+}
+
+function createEarly(study) {
   const early = study.runs.filter((run) => run.status !== "completed");
-  if (early.length === 0) return [];
+  if (early.length === 0) return null;
   const shown = early.slice(0, 5).map((run) => element("li", {}, `${run.title}: ${run.status}. ${run.reason}`));
-  return [element("div", { class: "notice early", role: "alert" },
+  return element("div", { class: "notice early", role: "alert" },
     element("strong", {}, `${early.length} of ${study.runs.length} runs did not complete.`),
-    element("ul", {}, shown, early.length > 5 ? element("li", {}, `and ${early.length - 5} more`) : null))];
+    element("ul", {}, shown, early.length > 5 ? element("li", {}, `and ${early.length - 5} more`) : null));
+}
+
+// Each sentence once, with how many runs have it; a click opens them.
+function createWarnings(study) {
+  const [counts, count] = [new Map(), study.runs.length];
+  for (const run of study.runs) for (const warning of run.warnings) counts.set(warning, (counts.get(warning) || 0) + 1);
+  if (counts.size === 0) return null;
+  const warned = study.runs.filter((run) => run.warnings.length).length;
+  const shown = [...counts].sort((a, b) => b[1] - a[1]).slice(0, MOST_WARNINGS);
+  const more = counts.size - shown.length;
+  return element("details", { class: "notice" }, element("summary", {}, `${warned} of ${count} runs have warnings`),
+    element("ul", {}, shown.map(([warning, n]) => element("li", {}, `${n} of ${count} runs: ${warning}`)),
+      more > 0 ? element("li", {}, `and ${more} more: open a run to see its own`) : null));
+}
+
+// For how many runs the mesh is known to be converged.
+function createMeshes(study) {
+  const [count, counts] = [study.runs.length, new Map()];
+  for (const { mesh } of study.runs) {
+    const word = !mesh || mesh.converged === null ? "not checked" : mesh.converged ? "converged" : "not converged";
+    counts.set(word, (counts.get(word) || 0) + 1);
+  }
+  return element("p", { class: "remark checked" },
+    `Meshes: ${[...counts].map(([word, n]) => `${n} of ${count} ${word}`).join(", ")}.`);
 }
 
 function createCompareBar(study, selection, routes) {

@@ -37,6 +37,12 @@ function createNumbers(run) {
       unit ? element("span", { class: "faint" }, ` ${unit}`) : null))));
 }
 
+// Whether the mesh is known to be converged for the numbers, and how to find out.
+function createChecked(run) {
+  if (!run.mesh) return null;
+  return element("p", { class: "remark checked" }, `${run.mesh.sentence} Check: `, element("code", {}, run.mesh.command));
+}
+
 function section(title, isOpen, ...content) {
   return element("details", { class: "section", open: isOpen }, element("summary", {}, element("h2", {}, title)), content);
 }
