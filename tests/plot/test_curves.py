@@ -112,3 +112,24 @@ def test_dispersion_says_where_nothing_is_critical(history, words) -> None:
 def test_a_strip_has_no_dispersion(history) -> None:
     with pytest.raises(ConfigError, match="A strip has no circumferential modes"):
         gyrify.plot(history("strip"), "dispersion")
+
+
+@pytest.mark.parametrize("what", ["gi", "energy"])
+@pytest.mark.parametrize("others", [[], ["softer", "quadratic"]])
+def test_letters_of_panels_keep_clear_of_the_labels_of_axes(runs, what: str, others: list[str]) -> None:
+    figure = gyrify.plot(runs["linear"], what, compare=[runs[name] for name in others])
+    figure.canvas.draw()
+    labels = [axes.yaxis.label.get_window_extent() for axes in figure.axes]
+    letters = [text.get_window_extent() for text in figure.texts if text.get_text() in "abcd"]
+    assert len(letters) == len(labels) > 1
+    assert not [(a, b) for a in letters for b in labels if a.overlaps(b)]
+
+
+def test_indices_stand_beside_what_is_known_of_their_meshes(runs, words) -> None:
+    assert "mesh not converged" in words(gyrify.plot(runs["linear"], "gi"))
+    assert "mesh not checked" in words(gyrify.plot(runs["softer"], "gi"))
+    compared = gyrify.plot(runs["linear"], "gi", compare=[runs["softer"]])
+    assert "meshes: 1 not converged, 1 not checked" in words(compared)
+    assert any(
+        "mesh not checked" in said and "stopped" in said for said in words(gyrify.plot(runs["stopped"], "gi"))
+    )

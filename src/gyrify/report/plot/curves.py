@@ -25,7 +25,7 @@ def curves(
     title: Label, x_label: str, y_labels: Sequence[str], width_mm: float, heights_mm: Sequence[float]
 ) -> tuple[Figure, list[Axes]]:
     """Return a page with panels one above the other that share their abscissa, a letter each."""
-    top = _TOP_MM + LINE_MM * (len(title.wrapped(width_mm)) + bool(title.note)) + 2.0
+    top = _TOP_MM + LINE_MM * (len(title.wrapped(width_mm)) + bool(title.note)) + 3.0
     height = top + sum(heights_mm) + _GAP_MM * (len(heights_mm) - 1) + BOTTOM_MM
     figure = new_figure(width_mm, height)
     write_label(figure, title, MARGIN_MM, height - _TOP_MM, width_mm, weight="bold")
@@ -39,7 +39,7 @@ def curves(
         axes.tick_params(labelbottom=is_last)
         axes.yaxis.set_label_coords(-_LABEL_MM / box[2], 0.5)
         if len(heights_mm) > 1:
-            letter(figure, number, 1.0, upper + 1.5)
+            letter(figure, number, 1.0, upper + 3.5)  # above the label of the axis
         panels.append(axes)
         upper -= tall + _GAP_MM
     return figure, panels

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final
@@ -13,6 +14,7 @@ from matplotlib.ticker import MaxNLocator
 
 from gyrify.report.plot.curves import curves, mark_onset, title_of
 from gyrify.report.plot.shown import Shown
+from gyrify.report.plot.slices import Label
 from gyrify.report.plot.style import DASHES, HUES, SINGLE, TIME_LABEL, add_legend, literal
 from gyrify.report.sheet import FloatArray
 from gyrify.summary import measure_state
@@ -49,7 +51,9 @@ class Series:
 def gi_plot(states: Sequence[Shown], width_mm: float | None) -> Figure:
     """Indices of one run in their three definitions, or the index by the closing of several runs."""
     width = width_mm or SINGLE
-    figure, panels = curves(title_of(states, "Folding against growth"), TIME_LABEL, _LABELS, width, _HEIGHTS)
+    title = title_of(states, "Folding against growth")
+    title = Label(title.lines, "; ".join(filter(None, (title.note, _checked(states)))))
+    figure, panels = curves(title, TIME_LABEL, _LABELS, width, _HEIGHTS)
     if len(states) == 1:
         _one(panels, states[0])
     else:
@@ -60,6 +64,14 @@ def gi_plot(states: Sequence[Shown], width_mm: float | None) -> Figure:
     panels[2].set_ylim(top=max(1.0, panels[2].get_ylim()[1]))
     panels[0].set_xlim(0.0, max(state.history.config.growth.duration for state in states))
     return figure
+
+
+def _checked(states: Sequence[Shown]) -> str:
+    """What is known of the meshes of the runs, in a few words."""
+    counts = Counter(state.mark.removeprefix("mesh ") for state in states)
+    if len(counts) == 1:
+        return f"{'mesh' if len(states) == 1 else 'meshes'} {next(iter(counts))}"
+    return "meshes: " + ", ".join(f"{count} {words}" for words, count in counts.items())
 
 
 def _one(panels: Sequence[Axes], state: Shown) -> None:
