@@ -102,7 +102,7 @@ def copy_tree(folder: Path) -> Path:
     return folder
 
 
-def run_tests(tree: Path, tests: tuple[str, ...], cache: Path) -> tuple[int, str]:
+def run_tests(tree: Path, tests: tuple[str, ...], cache: Path, seconds: float = TIMEOUT) -> tuple[int, str]:
     """Exit code of pytest in a tree, and the end of what it says; 124 when it takes too long."""
     environment = {
         **os.environ,
@@ -120,7 +120,7 @@ def run_tests(tree: Path, tests: tuple[str, ...], cache: Path) -> tuple[int, str
     command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "-m", "not slow", *tests]
     try:
         done = subprocess.run(
-            command, env=environment, cwd=tree, capture_output=True, text=True, timeout=TIMEOUT
+            command, env=environment, cwd=tree, capture_output=True, text=True, timeout=seconds
         )
     except subprocess.TimeoutExpired:
         return 124, "took too long"
@@ -167,7 +167,7 @@ def judge_all(mutants: list[Mutant], jobs: int) -> list[Outcome]:
             tree = trees.get()
             try:
                 if mutant is None:
-                    code, said = run_tests(tree, needed, tree / "cache")
+                    code, said = run_tests(tree, needed, tree / "cache", 10.0 * TIMEOUT)
                     return "" if code == 0 else said
                 outcome = judge(mutant, tree)
                 print(
