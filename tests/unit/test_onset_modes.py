@@ -9,6 +9,7 @@ from gyrify.config import Config
 from gyrify.mesh import Mesh
 from gyrify.meshing import build_mesh
 from gyrify.onset.modes import mean_thickness, wave_of
+from gyrify.onset.relaxation import are_folds_kept
 
 CIRCLE = {"geometry.shape": "circle", "mesh.n_around": 216, "mesh.node_jitter": 0.0}
 
@@ -77,3 +78,19 @@ def test_a_shift_of_a_strip() -> None:
     strip = build_mesh(Config(geometry={"shape": "strip"}, mesh={"node_jitter": 0.0}))
     along = np.broadcast_to([1.0, 0.0], strip.points.shape)
     assert wave_of(strip, 0.0 * strip.points, along).kind == "translation"
+
+
+@pytest.mark.parametrize(
+    ("held", "free", "is_kept"),
+    [
+        ((19, 1.411), (19, 1.399), True),
+        ((19, 1.411), (18, 1.411), False),
+        ((0, 1.0), (0, 1.021), False),
+        ((19, 1.411), (19, 1.432), False),
+        ((19, 1.411), (19, 1.390), False),
+    ],
+)
+def test_folds_are_kept_with_as_many_gyri_and_the_index_near(
+    held: tuple[int, float], free: tuple[int, float], is_kept: bool
+) -> None:
+    assert are_folds_kept(held, free) is is_kept

@@ -90,9 +90,14 @@ def relax(
     if solution.result is not Result.CONVERGED:
         return None
     held, free = _measured(problem, u), _measured(problem, solution.u)
-    is_kept = held.n_gyri == free.n_gyri and abs(held.gi_closing - free.gi_closing) <= KEPT
+    is_kept = are_folds_kept((held.n_gyri, held.gi_closing), (free.n_gyri, free.gi_closing))
     moved = np.linalg.norm(solution.u - u, axis=1)[: problem.mesh.n_points]
     return Relaxation(float(free.gi_closing), int(free.n_gyri), float(moved.max()), is_kept)
+
+
+def are_folds_kept(held: tuple[int, float], free: tuple[int, float]) -> bool:
+    """Whether gyri and index (closing) of a state are those of what it relaxes to."""
+    return held[0] == free[0] and abs(held[1] - free[1]) <= KEPT
 
 
 def _measured(problem: Slice, u: FloatArray) -> Measures:
