@@ -11,6 +11,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import io
+import re
 import tempfile
 from collections.abc import Callable
 from contextlib import AbstractContextManager
@@ -151,6 +152,7 @@ COMMAND_LINE = [
     Case("preset-in-file", "a preset in a file that does not exist", ("does not exist",), 'preset = "../../secret"'),
     Case("option-value", "a bad value of an option", ("growth.ratio = -3 ",), args=(*CHECK, "--growth-ratio", "-3")),
     Case("slivers", "layers far too thin for their columns", ("quality 0.011", "too wide", "Try mesh.n_around = "), args=(*CHECK, "--thickness", "0.05")),
+    Case("axial-power", "a power of growth along z where there is none", ("out_of_plane_exponent = 0.5", "no growth along z", "Try"), '[growth]\nout_of_plane = "none"\nout_of_plane_exponent = 0.5'),
     Case("axial-patches", "an element that has no free stretch along z", ("growth.out_of_plane", "mean_dilatation", "Try"), '[growth]\nout_of_plane = "generalised"\n[mesh]\nelement = "mean_dilatation"'),
     Case("cortex-refined-too-often", "more refinements of the cortex than white layers", ("mesh.refine_cortex = 4", "3 white"), "[mesh]\nn_layers = 9\nrefine_cortex = 4"),
     Case("symmetric-columns", "columns that cannot be symmetric", ("mesh.split", "4 must divide", "n_around = 60 or 64"), "[mesh]\nn_around = 62\nsplit = \"symmetric\""),
@@ -215,7 +217,10 @@ def _line(case: Case) -> str:
     with tempfile.TemporaryDirectory() as folder:
         code, message = provoke(case, Path(folder))
     what = case.what if code == 2 else f"{case.what} (exit code {code})"
-    text = message.strip().replace("\n", "<br>")
+    # which disk is this machine's own, and no part of the page
+    text = re.sub(r" It is on a disk of type .*? \(mounted at .*?\)\.", "", message.strip()).replace(
+        "\n", "<br>"
+    )
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in (what, case.input(), text)) + " |"
 
 

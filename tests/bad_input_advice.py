@@ -131,6 +131,12 @@ ADVICE: dict[str, list[Way]] = {
             args=(*CHECK, "--thickness", "0.05", "--set", "mesh.n_cortex_layers=3"),
         ),
     ],
+    "axial-power": [
+        Way(
+            'Try growth.out_of_plane = "blocked"',
+            '[growth]\nout_of_plane = "blocked"\nout_of_plane_exponent = 0.5',
+        )
+    ],
     "axial-patches": [
         Way(f'"{element}"', f'[growth]\nout_of_plane = "generalised"\n[mesh]\nelement = "{element}"')
         for element in ("quadratic", "linear")

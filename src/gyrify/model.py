@@ -14,7 +14,7 @@ from gyrify.energy.kinematics import ElasticKinematics
 from gyrify.energy.term import EnergyTerm, FloatArray, IntArray
 from gyrify.energy.total import TotalEnergy
 from gyrify.energy.unknowns import Unknowns
-from gyrify.energy.viscous import DragEnergy, KelvinVoigtEnergy, green_lagrange
+from gyrify.energy.viscous import DragEnergy, KelvinVoigtEnergy, green_lagrange, reduction
 from gyrify.mesh.symmetry import representatives
 from gyrify.meshing import build_mesh
 from gyrify.solve.linear import linear_solver
@@ -190,7 +190,7 @@ class Slice(Tissue):
         duration = self.config.growth.duration
         kinematics = self.kinematics(fraction * duration)
         terms: list[EnergyTerm] = [self.elastic_energy(kinematics)]
-        terms += self._dissipation(kinematics, start, start_fraction * duration, fraction - start_fraction)
+        terms += self._dissipation(kinematics, start, start_fraction, fraction)
         return TotalEnergy([*terms, *self._barriers(start.u)])
 
     def system(self, couplings: IntArray, unknowns: Unknowns | None = None) -> System:
@@ -228,14 +228,16 @@ class Slice(Tissue):
         return terms
 
     def _dissipation(
-        self, kinematics: ElasticKinematics, start: State, start_time: float, span: float
+        self, kinematics: ElasticKinematics, start: State, start_fraction: float, fraction: float
     ) -> list[EnergyTerm]:
-        """Energy of the increment's dissipation; ``span`` is a fraction of the duration."""
+        """Energy of the dissipation of an increment between two fractions of growth."""
         if self.is_conservative:
             return []
-        kind, number = self.config.dissipation.kind, self.config.dissipation.number
-        rate = number * self.config.material.young_modulus / span
-        if kind == "drag":
+        dissipation = self.config.dissipation
+        number = dissipation.number * reduction(dissipation.course, fraction)
+        rate = number * self.config.material.young_modulus / (fraction - start_fraction)
+        if dissipation.kind == "drag":
             return [DragEnergy(rate / self.config.geometry.drag_length**2, self.lumped_area, start.u)]
+        start_time = start_fraction * self.config.growth.duration
         strain = green_lagrange(self.kinematics(start_time).deformation(start.u))
         return [KelvinVoigtEnergy(kinematics, rate, self.weight(kinematics), strain, self.pattern)]

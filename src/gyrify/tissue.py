@@ -128,10 +128,14 @@ class Tissue:
         corners = self.mesh.cell_points[self.mesh.region == GREY, :3]
         return float(np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).mean())
 
+    def _out_of_plane(self, stretch: FloatArray) -> FloatArray:
+        growth = self.config.growth
+        return out_of_plane_growth(stretch, growth.out_of_plane, growth.out_of_plane_exponent)
+
     def kinematics(self, time: float) -> ElasticKinematics:
         """Cells in their grown state at a growth time."""
         stretch = growth_stretch(self.rate, time, self.config.growth.stretch)
-        out_of_plane = out_of_plane_growth(stretch, self.config.growth.out_of_plane)
+        out_of_plane = self._out_of_plane(stretch)
         return ElasticKinematics.of(
             self.simplices, growth_tensor(stretch, self.tangential, self.across), out_of_plane
         )
@@ -139,7 +143,7 @@ class Tissue:
     def volume_growth(self, time: float) -> FloatArray:
         """(n,) J_g = det F_g at a growth time, the 33 entry included."""
         stretch = growth_stretch(self.rate, time, self.config.growth.stretch)
-        out_of_plane = out_of_plane_growth(stretch, self.config.growth.out_of_plane)
+        out_of_plane = self._out_of_plane(stretch)
         across = np.where(self.tangential, 1.0, stretch)
         return np.asarray(stretch ** (self.mesh.n_dim - 1) * across * out_of_plane)
 

@@ -58,6 +58,8 @@ def test_a_fine_mesh_of_the_same_tissue_is_converged() -> None:
         {"growth.ratio": 3.5},
         {"geometry.cortical_thickness": 1.6},
         {"dissipation.number": 0.13},
+        {"dissipation.course": "reduced"},
+        {"growth.out_of_plane_exponent": 0.9},
         {"dissipation.kind": "none"},
         {"contact.enabled": False},
         {"metrics.closing_radius": 9.0},

@@ -6,6 +6,8 @@ drag number 1.3 lost stability at growth time 7.5, by a rotation about its hole.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -67,6 +69,24 @@ def test_quadratic_cells_give_the_onset_of_the_annulus(hole: float, law: str) ->
     found = onset(circle(hole, mesh__element="quadratic", **values))
     assert found.growth_time == pytest.approx(time, rel=2e-3)
     assert found.mode_number == pytest.approx(number, abs=1)
+
+
+@pytest.mark.parametrize(("reading", "exponent"), [("blocked", 0.5), ("generalised", 0.3)])
+def test_growth_along_z_moves_the_onset_as_theory_says(reading: str, exponent: float) -> None:
+    own = Annulus(18.0, RADIUS, out_of_plane=reading, out_of_plane_exponent=exponent, growth_ratio=8.0)  # type: ignore[arg-type]
+    first, full = (
+        critical_growth_time(annulus, TIMES)[0] for annulus in (own, replace(own, out_of_plane_exponent=1.0))
+    )
+    assert abs(first.value / full.value - 1.0) > 0.02
+    assert first.mode_number is not None
+    values = {
+        "growth__out_of_plane": reading,
+        "growth__out_of_plane_exponent": exponent,
+        "growth__ratio": 8.0,
+        "mesh__n_around": 10 * first.mode_number,
+    }
+    found = onset(circle(0.5, mesh__element="quadratic", **values))
+    assert found.growth_time == pytest.approx(first.value, rel=2e-3)
 
 
 @pytest.mark.slow

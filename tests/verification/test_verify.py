@@ -69,6 +69,8 @@ def test_a_run_with_contact_passes_every_check(stored: Path):
         {"contact.enabled": False},
         {"growth.rate": 0.0},
         {"growth.out_of_plane": "generalised"},
+        {"growth.out_of_plane": "generalised", "growth.out_of_plane_exponent": 0.13},
+        {"dissipation.course": "reduced", "growth.out_of_plane_exponent": 0.5},
         {"mesh.element": "quadratic", "growth.duration": 300.0},
         {"mesh.element": "quadratic", "mesh.inversion_resistance": 0.1},
         {"mesh.element": "mean_dilatation"},

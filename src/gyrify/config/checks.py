@@ -120,7 +120,14 @@ def _branch(config: Config) -> str:
 
 
 def _axial(config: Config) -> str:
-    if config.growth.out_of_plane != "generalised":
+    growth = config.growth
+    if growth.out_of_plane == "none" and growth.out_of_plane_exponent != 1.0:
+        return (
+            f"growth.out_of_plane_exponent = {growth.out_of_plane_exponent:g} is not allowed with "
+            'growth.out_of_plane = "none": there is no growth along z that it could change. Try '
+            'growth.out_of_plane = "blocked".'
+        )
+    if growth.out_of_plane != "generalised":
         return ""
     if config.mesh.element == "mean_dilatation":
         return (

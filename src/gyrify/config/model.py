@@ -24,7 +24,11 @@ from gyrify.errors import ConfigError
 NOT_HASHED: Final = frozenset({"output", "limits"})
 # Keys that came later, with their section: at its default such a key is not hashed, so that the hashes of
 # earlier configurations stay.
-LATER: Final = (("mesh", "inversion_resistance"),)
+LATER: Final = (
+    ("mesh", "inversion_resistance"),
+    ("growth", "out_of_plane_exponent"),
+    ("dissipation", "course"),
+)
 
 
 class Config(Section):

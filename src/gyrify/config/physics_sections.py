@@ -214,6 +214,12 @@ class Growth(Section):
         "blocked",
         "Along z: blocked (grows, F33 = 1), none (no growth, F33 = 1), generalised (no net force).",
     )
+    out_of_plane_exponent: float = setting(
+        1.0,
+        "Growth along z as a power s of the growth stretch, F_g,33 = λ_g^s: 1 as in the plane, 0 none.",
+        ge=0,
+        le=2,
+    )
     stretch: Literal["linear", "exponential"] = setting(
         "linear", "Growth stretch: linear (1 + G t) or exponential (exp G t)."
     )
@@ -256,4 +262,9 @@ class Dissipation(Section):
         "η/(E_G · duration) for Kelvin-Voigt.",
         ge=0,
         le=1000,
+    )
+    course: Literal["constant", "reduced"] = setting(
+        "constant",
+        "Over growth: constant, or reduced in proportion to what is left of it, max(1 − t/duration, 0.001), "
+        "t the end of the increment.",
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Literal
 
 import numpy as np
 
@@ -11,6 +12,27 @@ from gyrify.energy.elastic import CellPattern
 from gyrify.energy.kernels import elastic_kernels
 from gyrify.energy.kinematics import ElasticKinematics
 from gyrify.energy.term import Evaluation, FloatArray, Hessian, Pattern
+
+# What is left of a reduced coefficient at the end of growth.
+_LEAST = 1e-3
+
+
+def reduction(course: Literal["constant", "reduced"], fraction: float) -> float:
+    """Part of its coefficient that dissipation has over an increment.
+
+    Parameters
+    ----------
+    course : {"constant", "reduced"}
+        Constant, or in proportion to the growth that is left, so that the last state is an equilibrium.
+    fraction : float
+        Growth at the end of the increment, as a fraction of the whole.
+
+    Returns
+    -------
+    float
+        max(1 - fraction, 0.001) where it is reduced.
+    """
+    return 1.0 if course == "constant" else max(1.0 - fraction, _LEAST)
 
 
 class DragEnergy:

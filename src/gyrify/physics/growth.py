@@ -59,7 +59,7 @@ def growth_tensor(stretch: FloatArray, tangential: NDArray[np.bool_], across: Fl
     return tensor + normal[:, None, None] * across[:, :, None] * across[:, None, :]
 
 
-def out_of_plane_growth(stretch: FloatArray, out_of_plane: OutOfPlane) -> FloatArray:
+def out_of_plane_growth(stretch: FloatArray, out_of_plane: OutOfPlane, exponent: float = 1.0) -> FloatArray:
     """Out-of-plane entry F_g,33 of the growth tensor.
 
     Parameters
@@ -67,11 +67,16 @@ def out_of_plane_growth(stretch: FloatArray, out_of_plane: OutOfPlane) -> FloatA
     stretch : (n_cells,) float array
         Growth stretch lambda_g.
     out_of_plane : {"blocked", "none", "generalised"}
-        ``blocked``: the tissue grows in z too but is held, F_g,33 = lambda_g, so F_e,33 = 1 / lambda_g.
+        ``blocked``: the tissue grows in z too but is held, F_g,33 = lambda_g^s, so F_e,33 = 1 / F_g,33.
         ``none``: no growth in z, F_g,33 = 1. ``generalised``: grows in z, with a free common F33.
+    exponent : float
+        s, how much of the growth in the plane there is in z: 1 for as much, 0 for none.
 
     Returns
     -------
     (n_cells,) float array
     """
-    return np.ones_like(stretch) if out_of_plane == "none" else stretch.copy()
+    if out_of_plane == "none":
+        return np.ones_like(stretch)
+    # A power of 1 may differ in the last bit, and results must not.
+    return stretch.copy() if exponent == 1.0 else stretch**exponent

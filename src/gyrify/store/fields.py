@@ -216,8 +216,8 @@ class StateFields:
     @cached_property
     def stress(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Cauchy stress components 11, 22, 33, 12, each (n,) [Pa]; 13 and 23 are zero."""
-        problem, F = self._problem, self._F_e
-        F_g33 = out_of_plane_growth(self._stretch, problem.config.growth.out_of_plane)
+        problem, F, growth = self._problem, self._F_e, self._problem.config.growth
+        F_g33 = out_of_plane_growth(self._stretch, growth.out_of_plane, growth.out_of_plane_exponent)
         f33 = problem.axial_stretch(self._state) / F_g33
         b11, b22 = F[0, 0] ** 2 + F[0, 1] ** 2, F[1, 0] ** 2 + F[1, 1] ** 2
         b33, b12 = f33**2, F[0, 0] * F[1, 0] + F[0, 1] * F[1, 1]

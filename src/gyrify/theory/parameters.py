@@ -60,6 +60,8 @@ class Annulus:
         Final growth time [time].
     out_of_plane : {"blocked", "none", "generalised"}
         Total F_33 = 1 with growth in z, F_33 = 1 without, or F_33 free of net axial force with growth in z.
+    out_of_plane_exponent : float
+        s of the growth in z, F_g,33 = lambda_g^s [-], >= 0.
     stretch : {"linear", "exponential"}
         lambda_g = 1 + G t or exp(G t).
     energy_per : {"grown", "reference"}
@@ -86,6 +88,7 @@ class Annulus:
     growth_ratio: float = 3.6
     duration: float = 500.0
     out_of_plane: OutOfPlane = "blocked"
+    out_of_plane_exponent: float = 1.0
     stretch: Stretch = "linear"
     energy_per: EnergyPer = "grown"
     law: Law = "isotropic"
@@ -97,6 +100,9 @@ class Annulus:
             if field.name in _CHOICES:
                 if value not in _CHOICES[field.name]:
                     raise ConfigError(f"{field.name} is {value!r}.", f"Choose one of {_CHOICES[field.name]}.")
+            elif field.name == "out_of_plane_exponent":
+                if not 0.0 <= value < np.inf:
+                    raise ConfigError(f"{field.name} is {value}.", "It must be 0 or more.")
             elif value is not None and "poisson" not in field.name and not 0.0 < value < np.inf:
                 raise ConfigError(f"{field.name} is {value}.", "It must be positive.")
         if not self.inner_radius < self.interface_radius:
@@ -144,6 +150,7 @@ class Annulus:
         grey = np.asarray(radius, dtype=np.float64) >= self.interface_radius
         rate = self.growth_rate * np.where(grey, 1.0, 1.0 / self.growth_ratio)
         growth = np.repeat(growth_stretch(rate, growth_time, self.stretch)[:, None], 3, axis=1)
+        growth[:, 2] **= self.out_of_plane_exponent
         if self.law == "tangential":
             growth[grey, 0] = 1.0
         if self.out_of_plane == "none":

@@ -232,7 +232,7 @@ class MeshColumns:
         growth = self._config.growth
         stretch = growth_stretch(self._rate, time, growth.stretch)
         F_g = growth_tensor(stretch, self._tangential, self._across)
-        F_g33 = out_of_plane_growth(stretch, growth.out_of_plane)
+        F_g33 = out_of_plane_growth(stretch, growth.out_of_plane, growth.out_of_plane_exponent)
         inverse = np.linalg.inv(F_g)
         slopes = self._gradients @ inverse
         B = np.einsum("caik,caj->cijak", self._turn, slopes).reshape(len(slopes), 4, -1)

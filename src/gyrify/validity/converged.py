@@ -36,7 +36,7 @@ class Limit:
 
 
 LIMITS: Final = (
-    Limit({"kind": "drag", "number": 1.3}, False, 1.74, 0.03),
+    Limit({"kind": "drag", "number": 1.3, "course": "constant"}, False, 1.74, 0.03),
     Limit({"kind": "none"}, True, 1.59, 0.02),
 )
 

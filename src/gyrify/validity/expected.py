@@ -128,6 +128,7 @@ def annulus_of(config: Config) -> Annulus:
         growth_ratio=growth.ratio,
         duration=growth.duration,
         out_of_plane=growth.out_of_plane,
+        out_of_plane_exponent=growth.out_of_plane_exponent,
         stretch=growth.stretch,
         energy_per=growth.energy_per,
         law=growth.law,
@@ -177,6 +178,8 @@ def bilayer_of(config: Config) -> Bilayer | str:
     still = growth.ratio >= _STILL
     if growth.out_of_plane == "generalised":
         return 'The theory of a strip has no growth.out_of_plane = "generalised".'
+    if growth.out_of_plane == "blocked" and growth.out_of_plane_exponent != 1.0:
+        return "The theory of a strip has no growth.out_of_plane_exponent other than 1."
     if growth.stretch == "exponential" and not still:
         return 'The theory of a strip has no growth.stretch = "exponential" while white matter grows too.'
     if growth.law == "tangential" and not still:

@@ -83,6 +83,7 @@ def annulus_of(config: Config) -> Annulus:
         growth_ratio=growth.ratio,
         duration=growth.duration,
         out_of_plane=growth.out_of_plane,
+        out_of_plane_exponent=growth.out_of_plane_exponent,
         stretch=growth.stretch,
         energy_per=growth.energy_per,
         law=growth.law,
