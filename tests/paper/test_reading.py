@@ -118,3 +118,14 @@ def test_spread_of_few_values() -> None:
     assert spread("x", [1.0, 3.0, float("inf")]) == spread("x", [1.0, 3.0])
     assert (spread("x", [2.0]).mean, spread("x", [2.0]).deviation) == (2.0, 0.0)
     assert spread("x", []).n == 0
+
+
+def test_growth_along_z_and_the_course_of_dissipation_are_part_of_a_reading() -> None:
+    base = Config.preset("reference-slice")
+    own = Mechanics(out_of_plane="generalised", number=2.6, exponent=0.13, course="reduced")
+    point = point_of(base, own, all_cases()[0], 0)
+    assert point.config.growth.out_of_plane_exponent == 0.13
+    assert point.config.dissipation.course == "reduced"
+    assert Mechanics.of(point.config) == own
+    assert str(own).startswith("generalised to the power 0.13, linear, grown, drag 2.6 reduced over growth, ")
+    assert "power" not in str(Mechanics())

@@ -41,6 +41,10 @@ class Mechanics:
         Finite element.
     imperfection : float
         Node jitter, as a fraction of the local layer [-].
+    exponent : float
+        Growth along z as a power of that in the plane [-].
+    course : str
+        Of the dissipation over growth.
     """
 
     out_of_plane: str = "blocked"
@@ -50,6 +54,8 @@ class Mechanics:
     number: float = 1.3
     element: str = "linear"
     imperfection: float = 1e-3
+    exponent: float = 1.0
+    course: str = "constant"
 
     @classmethod
     def of(cls, config: Config) -> Mechanics:
@@ -64,6 +70,8 @@ class Mechanics:
             number,
             config.mesh.element,
             config.mesh.node_jitter,
+            growth.out_of_plane_exponent,
+            dissipation.course,
         )
 
     @property
@@ -77,12 +85,16 @@ class Mechanics:
             "dissipation.number": self.number,
             "mesh.element": self.element,
             "mesh.node_jitter": self.imperfection,
+            "growth.out_of_plane_exponent": self.exponent,
+            "dissipation.course": self.course,
         }
 
     def __str__(self) -> str:
         drag = "no dissipation" if self.dissipation == "none" else f"{self.dissipation} {self.number:g}"
+        drag += " reduced over growth" if self.course == "reduced" else ""
         jitter = f"imperfection {self.imperfection:g}"
-        words = (self.out_of_plane, self.stretch, self.energy_per, drag, f"{self.element} triangles", jitter)
+        plane = self.out_of_plane + (f" to the power {self.exponent:g}" if self.exponent != 1.0 else "")
+        words = (plane, self.stretch, self.energy_per, drag, f"{self.element} triangles", jitter)
         return ", ".join(words).replace("_", " ").replace("kelvin voigt", "Kelvin-Voigt")
 
 
