@@ -72,7 +72,10 @@ def test_frames_say_time_and_index_and_hold_the_frame(history) -> None:
     assert f"growth time {run.growth_times[-1]:.4g} of 500" in told
     assert "run interrupted at 50% of growth" in told
     gi = gyrify.measure_state(run).gi_closing
-    assert any(text.startswith(f"GI {gi:.2f} (closing, 10 mm)") for text in told)
+    line = next(text for text in told if text.startswith(f"GI {gi:.2f} (closing, 10 mm)"))
+    assert line.endswith("mesh not checked")
+    room = scene.figure.bbox.width
+    assert all(text.get_window_extent().x1 < room for text in scene.figure.texts)
     for number, state in enumerate(states):
         scene.pixels(number)
         contour = scene.figure.axes[0].lines[-1].get_xydata()

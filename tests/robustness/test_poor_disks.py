@@ -26,7 +26,8 @@ from gyrify.store.lock import SOFT_LOCK, run_lock
 from gyrify.store.soft_lock import SoftLock
 
 KINDS = ["maps", "records,maps", "records,files", "records,maps,files"]
-LONG = {"mesh.n_around": 96, "mesh.n_layers": 10, "mesh.n_cortex_layers": 4, "solver.increments": 500}
+# Long enough for a reader on a busy machine to find it at work.
+LONG = {"mesh.n_around": 96, "mesh.n_layers": 10, "mesh.n_cortex_layers": 4, "solver.increments": 1000}
 
 
 @pytest.fixture(scope="session")

@@ -103,7 +103,7 @@ def test_an_onset_that_is_not_crossed_has_no_curve(
     [
         ([[], [], [], []], [], "does not change stability in this range"),
         ([None, None, None, None], [], "in this range: without a smooth state throughout"),
-        ([None, [], [], []], [], "of 4 sections no curve crosses 1 without a smooth state, 3 stable"),
+        ([None, [], [], []], [], "no onset in 4 of 4 sections (1 without a smooth state, 3 stable)"),
         ([[2.0], [], [], []], [], "only at an edge of this range"),
         ([[2.0], [2.1], [], []], [2], "Onset: exact"),
         ([[2.0], [2.1], [2.2, 3.0], [2.3, 3.1]], [4, 2], "Onset: exact"),

@@ -106,7 +106,7 @@ def test_a_map_says_what_it_is_where_no_curve_runs(monkeypatch: pytest.MonkeyPat
     assert "in this range: unstable throughout." in onset_curve(config, keys, ((3.0, 4.0), (1.0, 1.5))).note
     assert "in this range: stable throughout." in onset_curve(config, keys, ((1.0, 1.2), (0.8, 1.0))).note
     found = onset_curve(config, keys, ((1.0, 1.6), (0.7, 2.0)))
-    assert found.note.endswith("of 3 sections no curve crosses 1 stable.")
+    assert found.note.endswith("no onset in 1 of 3 sections (stable).")
 
 
 def test_family_notes_tell_it(tmp_path: Path) -> None:

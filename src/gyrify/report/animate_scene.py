@@ -129,7 +129,7 @@ class Scene:
             self._lines, (_joined(sheet.exposed), sheet.interface, sheet.contour), strict=True
         ):
             drawn.set_data(vertices[:, 0], vertices[:, 1])
-        for text, words in zip(self._texts, frame_text(state), strict=True):
+        for text, words in zip(self._texts, frame_text(state, self.states[-1].mark), strict=True):
             text.set_text(words)
 
 
@@ -172,14 +172,14 @@ class Field:
         self._drawn.set_array(per_triangle(self._states[number].history, self._values[number], sheet))
 
 
-def frame_text(state: Shown) -> tuple[str, str]:
-    """What is written above a frame: growth time, index and gyri."""
+def frame_text(state: Shown, mark: str) -> tuple[str, str]:
+    """What is written above a frame: growth time, index, gyri, and what is known of the mesh."""
     gyri, duration = state.measures.n_gyri, state.history.config.growth.duration
     count = f"{gyri} {'gyrus' if gyri == 1 else 'gyri'}"
     radius = state.measures.closing_radius
     return (
         f"growth time {state.growth_time:.4g} of {duration:g}",
-        f"GI {state.measures.gi_closing:.2f} (closing, {radius:g} mm)   {count}",
+        f"GI {state.measures.gi_closing:.2f} (closing, {radius:g} mm)   {count}   {mark}",
     )
 
 

@@ -113,8 +113,9 @@ def _without_curve(outcomes: list[str], n_sections: int) -> str:
         return ""
     if len(outcomes) == n_sections and len(set(outcomes)) == 1:
         return f": {outcomes[0]} throughout"
-    counts = ", ".join(f"{outcomes.count(kind)} {kind}" for kind in dict.fromkeys(outcomes))
-    return f"; of {n_sections} sections no curve crosses {counts}"
+    kinds = list(dict.fromkeys(outcomes))
+    found = kinds[0] if len(kinds) == 1 else ", ".join(f"{outcomes.count(kind)} {kind}" for kind in kinds)
+    return f"; no onset in {len(outcomes)} of {n_sections} sections ({found})"
 
 
 def _section(config: Config, other: tuple[str, float], key: str, span: Span) -> _Section:
