@@ -56,10 +56,8 @@ def converge(
         Show no progress.
     """
     resolved = overrides.resolve(config)
-    subjects, largest = (
-        None if of is None else _subjects(of),
-        0.02 if tolerance is None else number("--tolerance", tolerance, "0.02"),
-    )
+    subjects = None if of is None else _subjects(of)
+    largest = 0.02 if tolerance is None else number("--tolerance", tolerance, "0.02")
     from gyrify.convergence import converge as study
     from gyrify.convergence.converge import default_folder
 
@@ -75,17 +73,21 @@ def converge(
             resolved, folder, levels=levels, of=subjects, workers=processes, tolerance=largest, tell=tell
         )
     except KeyboardInterrupt:
-        said, advice = "Every accepted increment is stored.", "Run the same command again to continue."
-        complain(f"Interrupted. {said} {advice}")
-        if json:
-            print_json({"error": "Interrupted", "message": said, "advice": advice})
-        return INTERRUPTED
+        return _tell_interrupted(json)
     from gyrify.report.convergence import write_pictures
 
     write_pictures(found, folder)
     warn(found.warnings)
     print_json(found.as_dict()) if json else _report(found, folder)
     return _EXIT_CODES[found.status]
+
+
+def _tell_interrupted(json: bool) -> int:
+    said, advice = "Every accepted increment is stored.", "Run the same command again to continue."
+    complain(f"Interrupted. {said} {advice}")
+    if json:
+        print_json({"error": "Interrupted", "message": said, "advice": advice})
+    return INTERRUPTED
 
 
 def _subjects(text: str) -> Sequence[Subject]:

@@ -65,10 +65,7 @@ def converge(
     """
     begun, config = time.perf_counter(), as_config(config)
     tolerance, workers = real_number("tolerance", tolerance), whole_number("workers", workers)
-    if not 0.0 < tolerance < 1.0:
-        raise ConfigError(f"tolerance = {tolerance:g} is out of range (above 0, below 1).", "Try 0.02.")
-    if not 1 <= workers <= 256:
-        raise ConfigError(f"workers = {workers} is out of range (1 to 256).", "Try the number of cores.")
+    _require_sensible(tolerance, workers)
     usual = tuple(s for s in SUBJECTS if s != "contact" or config.contact.enabled)
     folder = default_folder(config) if out is None else as_path("out", out)
     plans = plan(config, usual if of is None else as_words("of", of), whole_number("levels", levels))
@@ -79,6 +76,13 @@ def converge(
     with storage_faults(folder):
         convergence.write(folder)
     return convergence
+
+
+def _require_sensible(tolerance: float, workers: int) -> None:
+    if not 0.0 < tolerance < 1.0:
+        raise ConfigError(f"tolerance = {tolerance:g} is out of range (above 0, below 1).", "Try 0.02.")
+    if not 1 <= workers <= 256:
+        raise ConfigError(f"workers = {workers} is out of range (1 to 256).", "Try the number of cores.")
 
 
 def _complete(

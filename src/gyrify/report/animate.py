@@ -84,14 +84,11 @@ def animate(
     fps, seconds = real_number("fps", fps), real_number("seconds", seconds)
     width = whole_number("width", width)
     _check(target, field, fps=fps, seconds=seconds, width=width)
-    if target.suffix.lower() == ".mp4":
-        video_encoder()
     (last,) = show([run])
     states, repeats = frames_of(last.history, max(round(fps * seconds), 2))
     scene = Scene(states, 2 * round(width / 2), _field(field))
-    frames = watched(scene.pixels, len(states), observe)
     with storage_faults(target.parent, f"The animation {target}"), whole_file(target) as partial:
-        _write(partial, target.suffix.lower(), scene, frames, repeats, fps)
+        _write(partial, target.suffix, scene, watched(scene.pixels, len(states), observe), repeats, fps)
     return target
 
 
@@ -99,7 +96,7 @@ def _write(
     file: Path, suffix: str, scene: Scene, frames: Iterator[Pixels], repeats: list[int], fps: float
 ) -> None:
     """Write the frames; the last one is held."""
-    if suffix == ".mp4":
+    if suffix.lower() == ".mp4":
         repeats[-1] += math.ceil(HOLD * fps)
         write_mp4(file, frames, scene.size, repeats, fps)
     else:
@@ -140,3 +137,5 @@ def _check(target: Path, field: str, **numbers: float) -> None:
                 f"{name} = {value:g} is out of range: it must be {low:g} to {high:g} [{unit}].",
                 f"Give {name} in that range.",
             )
+    if target.suffix.lower() == ".mp4":
+        video_encoder()

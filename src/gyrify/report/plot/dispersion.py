@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -22,6 +22,7 @@ from gyrify.report.plot.style import DASHES, HUES, SINGLE, add_legend, literal
 from gyrify.report.sheet import FloatArray
 from gyrify.theory import Annulus, SecondVariation, base_state, surface_limit
 from gyrify.theory.margin import scaled
+from gyrify.validity import expected
 
 # Growth times that are scanned; modes up to waves of two cortical thicknesses.
 _TIMES: Final = 17
@@ -64,30 +65,12 @@ def annulus_of(config: Config) -> Annulus:
     ConfigError
         If it is a strip.
     """
-    shape, tissue, growth = config.geometry, config.material, config.growth
-    if shape.shape == "strip":
+    if config.geometry.shape == "strip":
         raise ConfigError(
             "A strip has no circumferential modes: dispersion is that of the exact circular slice.",
             "Choose another picture with --what; docs/strip.md has the exact onset of strips.",
         )
-    outer = math.sqrt(shape.area / math.pi)
-    return Annulus(
-        inner_radius=shape.hole_fraction * outer,
-        outer_radius=outer,
-        cortical_thickness=shape.cortical_thickness,
-        young_modulus=tissue.young_modulus,
-        stiffness_ratio=tissue.stiffness_ratio,
-        poisson_ratio=tissue.poisson_ratio,
-        poisson_ratio_white=tissue.poisson_ratio_white,
-        growth_rate=growth.rate,
-        growth_ratio=growth.ratio,
-        duration=growth.duration,
-        out_of_plane=growth.out_of_plane,
-        out_of_plane_exponent=growth.out_of_plane_exponent,
-        stretch=growth.stretch,
-        energy_per=growth.energy_per,
-        law=growth.law,
-    )
+    return replace(expected.annulus_of(config), degree=Annulus.degree)
 
 
 def dispersion(annulus: Annulus, modes: Iterable[int]) -> Dispersion:
