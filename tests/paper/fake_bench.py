@@ -10,8 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from gyrify.config import Config
+from gyrify.paper.index import Index
 from gyrify.paper.reading import Mechanics
+from gyrify.paper.row import Row, row_of
 from gyrify.study import Point, Record
+from gyrify.study.results import flat
 
 
 def numbers_of(config: Config) -> random.Random:
@@ -62,11 +65,20 @@ class FakeBench:
                 self.asked.append(point)
                 self.records[point.key] = self._record(point)
 
-    def record(self, point: Point) -> Record | None:
-        return self.records.get(point.key)
+    def row(self, point: Point, index: Index) -> Row | None:
+        record = self.records.get(point.key)
+        if record is None:
+            return None
+        metrics = None
+        if record.summary is not None:
+            metrics = flat(record.summary)
+            metrics["gi_picture"] = 0.2 + 0.8 * metrics["gi_closing"]
+            wide = 1 + 0.02 * (index.radius - 10.0)
+            metrics["gi"] = 1 + wide * (metrics[f"gi_{index.definition}"] - 1)
+        return row_of(point.config, point.key, record.status, record.reason, metrics)
 
     def _record(self, point: Point) -> Record:
-        stalls = Mechanics.of(point.config).number == 5.0 and point.config.growth.ratio == 360.0
+        stalls = Mechanics.of(point.config).number > 5.0 and point.config.growth.ratio == 360.0
         status, reason = ("failed", "Stalled.") if stalls else ("completed", "")
         summary = None if stalls else made_up(point.config)
         told = (point.config.config_hash, "v", status, reason, "", point.config.to_dict())

@@ -22,6 +22,7 @@ def perfect() -> dict[Case, Row]:
         rows[Case(stiffness)] = Row(
             gi=gi, n_gyri=19, depth=5.0, width=10.0, crown_fundus=uniform, sharpness=2.0, label=label
         )
+    rows[Case(STIFFNESS[2])] = replace(rows[Case(STIFFNESS[2])], n_gyri=12, depth=2.0)
     for stiffness in BOTH:
         one = rows[Case(stiffness)]
         first = FIRST_FOLDED[stiffness]

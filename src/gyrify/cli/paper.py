@@ -18,11 +18,13 @@ if TYPE_CHECKING:
 
     from gyrify.config import Config
     from gyrify.paper.bench import Bench
+    from gyrify.paper.ensemble import Ensemble
     from gyrify.paper.reading import Reading
     from gyrify.paper.reproduce import Reproduction
+    from gyrify.paper.search import Search
 
 PRESET = "wang2019"
-_MORE_SEEDS = "each of the best three again with five seeds"
+_MORE_SEEDS = "the best three, with and without fitted constants, with five seeds"
 
 
 def paper(
@@ -30,7 +32,7 @@ def paper(
     out: Path = Path("paper"),
     workers: int | None = None,
     readings: bool = False,
-    minutes: float = 45.0,
+    minutes: float = 75.0,
     preset: str = PRESET,
     set_: Annotated[tuple[str, ...], Parameter(name="--set", negative="", allow_leading_hyphen=True)] = (),
     gi: str | None = None,
@@ -50,15 +52,15 @@ def paper(
     workers : int, optional
         Processes, of one thread each; by default the number of cores.
     readings : bool
-        Screen every reading of what the paper leaves open, rank them, and repeat the best with five seeds.
+        Search the readings of what the paper leaves open, rank them, and repeat the best with five seeds.
     minutes : float
-        Time after which the screen begins nothing new.
+        Time after which the search begins nothing new.
     preset : str
         What to start from; its mechanics is the reading.
     set_ : sequence of str, optional
         Any other value, as section.field=value; may be repeated.
     gi : str, optional
-        Definition of the gyrification index: closing, hull or exposed; by default the preset's.
+        Definition of the gyrification index: closing, hull, exposed or picture; by default the preset's.
     seed : int
         Seed of the node jitter.
     json : bool
@@ -70,18 +72,20 @@ def paper(
     from gyrify.cli.study_progress import progress_of_points
     from gyrify.config import preset_about
     from gyrify.paper.bench import Bench
-    from gyrify.paper.reading import Mechanics, Reading, require_gi
+    from gyrify.paper.index import require_gi
+    from gyrify.paper.reading import Mechanics, Reading
 
     begun = time.perf_counter()
     base = resolve_config(preset=preset, set_=set_)
-    reading = Reading(Mechanics.of(base), require_gi(gi or preset_about(preset).gi_definition))
+    index = require_gi(gi or preset_about(preset).gi_definition, base.metrics.closing_radius)
+    reading = Reading(Mechanics.of(base), index)
     processes = cores(workers)
     _require(processes, minutes)
     seen = progress_of_points(quiet or readings)
     try:
         with seen as observer, Bench(out, processes, observer) as bench:
             if readings:
-                return _readings(bench, base, begun, minutes, seed, json, quiet)
+                return _readings(bench, base, begun, minutes, json, quiet)
             return _one(bench, base, reading, begun, seed, json)
     except KeyboardInterrupt:
         return _interrupted(json)
@@ -102,7 +106,7 @@ def _require(workers: int, minutes: float) -> None:
     if not 1 <= workers <= MAX_WORKERS:
         raise ConfigError(f"workers = {workers} is out of range (1 to {MAX_WORKERS}).", "Try 2.")
     if not 0 <= minutes < float("inf"):
-        raise ConfigError(f"minutes = {minutes:g} is out of range: it must be >= 0.", "Try 45.")
+        raise ConfigError(f"minutes = {minutes:g} is out of range: it must be >= 0.", "Try 75.")
 
 
 def _one(bench: Bench, base: Config, reading: Reading, begun: float, seed: int, json: bool) -> int:
@@ -130,55 +134,67 @@ def _one(bench: Bench, base: Config, reading: Reading, begun: float, seed: int, 
     return COMPLETED if any(row.is_complete for row in found.rows.values()) else FAILED
 
 
-def _readings(
-    bench: Bench, base: Config, begun: float, minutes: float, seed: int, json: bool, quiet: bool
-) -> int:
-    """Screen, rank, and repeat the best, which are then put in order by what holds with five seeds."""
+def _readings(bench: Bench, base: Config, begun: float, minutes: float, json: bool, quiet: bool) -> int:
+    """Search, rank, and repeat the best with fresh seeds, which put them in order."""
     from gyrify.paper.ensemble import best_first, repeat
-    from gyrify.paper.screen import BEST, ScreenProgress, screen
+    from gyrify.paper.search import BEST, SearchProgress, search
     from gyrify.report.paper import write_report
     from gyrify.report.paper_readings import write_readings
 
-    def tell(now: ScreenProgress) -> None:
+    def tell(now: SearchProgress) -> None:
         if not quiet:
             spent = (time.perf_counter() - begun) / 60
-            left = f"{now.live} of {now.total} readings can still be among the best {BEST}"
-            complain(f"{spent:.0f} min, {now.runs} runs; {left}; best: {now.best} hold, {now.reading}")
+            done = f"round {now.round} of {now.rounds}, {now.readings} readings, {now.runs} runs"
+            complain(f"{spent:.0f} min, {done}; best: {now.best:.3g} hold, {now.reading}")
 
-    screening = screen(bench, base, seed=seed, until=begun + 60 * minutes, tell=tell)
-    write_readings(screening, (), bench.folder)
+    found = search(bench, base, until=begun + 60 * minutes, tell=tell)
+    write_readings(found, (), bench.folder)
     if not quiet:
-        complain(f"Now {_MORE_SEEDS}." if screening.is_complete else "Time is over: no seeds yet.")
-    best = screening.candidates[:BEST] if screening.is_complete else ()
-    ensembles = best_first(repeat(bench, base, candidate.reading) for candidate in best)
+        complain(f"Now {_MORE_SEEDS}." if found.is_complete else "Time is over: no seeds yet.")
+    ensembles = []
+    for league in (found.fitted, found.free) if found.is_complete else ():
+        chosen = [c for c in league.ranked if c.is_complete][:BEST]
+        ensembles += best_first(repeat(bench, base, c.reading, stability=False) for c in chosen)
     if bench.records:
         bench.write()
-    files = write_readings(screening, ensembles, bench.folder)
+    files = write_readings(found, ensembles, bench.folder)
     for number, ensemble in enumerate(ensembles, start=1):
         write_report(ensemble.members[0], bench.stored, bench.folder / f"best-{number}", figures=number == 1)
-    document = _ranking(screening.candidates, ensembles, time.perf_counter() - begun)
+    document = _ranking(found, ensembles, time.perf_counter() - begun)
     if json:
         print_json(document)
     else:
         for entry in document["ranking"][:10]:
-            say(f"{entry['passed']:2d} hold, {entry['open']} open: {entry['reading']}")
+            say(f"{entry['passed']:5.2f} hold, {entry['constants']} fitted constants: {entry['reading']}")
         say(f"Ranking in {files[1]}.")
-    return COMPLETED if screening.is_complete else STOPPED
+    return COMPLETED if found.is_complete else STOPPED
 
 
-def _ranking(candidates: Sequence[Any], ensembles: Sequence[Any], wall_s: float) -> dict[str, Any]:
-    """The JSON document of a screen: the best scoreboard, the ranking, and the spread over seeds."""
-    boards = [candidate.boards[candidate.gi] for candidate in candidates]
+def _ranking(found: Search, ensembles: Sequence[Ensemble], wall_s: float) -> dict[str, Any]:
+    """The JSON document of a search: the best scoreboard, the ranking, and the spread over seeds."""
     ranking = [
-        {"reading": board.reading, "passed": board.passed, "open": board.open, "marks": board.marks}
-        for board in boards
+        {
+            "reading": str(c.reading),
+            "passed": c.passed,
+            "constants": len(c.reading.constants),
+            "complete": c.is_complete,
+            "proposed": c.origin,
+        }
+        for league in (found.fitted, found.free)
+        for c in league.ranked
     ]
-    best = ensembles[0].members[0].scoreboard if ensembles else boards[0]
     seeds = [
-        {"reading": str(e.reading), "passed": [m.scoreboard.passed for m in e.members], "passes": e.passes}
+        {
+            "reading": str(e.reading),
+            "passed": [m.scoreboard.passed for m in e.members],
+            "first_passed": [m.scoreboard.first_passed for m in e.members],
+            "constants": list(e.reading.constants),
+            "passes": e.passes,
+        }
         for e in ensembles
     ]
-    return {**best.as_dict(wall_s), "ranking": ranking, "seeds": seeds}
+    best = ensembles[0].members[0].scoreboard.as_dict(wall_s) if ensembles else {"wall_s": wall_s}
+    return {**best, "ranking": ranking, "seeds": seeds}
 
 
 def _show(found: Reproduction) -> None:

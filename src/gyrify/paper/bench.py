@@ -13,6 +13,8 @@ from pathlib import Path
 from typing import Any, Final, Self
 
 from gyrify.errors import GyrifyError
+from gyrify.paper.index import Index, index_metrics
+from gyrify.paper.row import Row, row_of
 from gyrify.pool import deaf_children
 from gyrify.signals import ending_signals
 from gyrify.study import Point, Record, StoredPoint, StudyProgress, final_state, run_points
@@ -41,6 +43,7 @@ class Bench:
         self.points: dict[str, Point] = {}
         self.records: dict[str, Record] = {}
         self.computed = 0
+        self._rows: dict[tuple[str, Index], Row] = {}
         self._executor: Executor | None = None
 
     def __enter__(self) -> Self:
@@ -80,9 +83,19 @@ class Bench:
         future: Future[Any] = self._executor.submit(work, *arguments)
         return future.result
 
-    def record(self, point: Point) -> Record | None:
-        """What a point came to, if it is known."""
-        return self.records.get(point.key)
+    def row(self, point: Point, index: Index) -> Row | None:
+        """What a point came to by one gyrification index, if it is known."""
+        record = self.records.get(point.key)
+        if record is None:
+            return None
+        known = (point.key, index)
+        if known not in self._rows:
+            reason = f"{record.reason} {record.advice}".strip()
+            metrics = None
+            if record.status == "completed" and record.summary is not None:
+                metrics = index_metrics(index, point.config, record.summary, lambda: self.stored(point.key))
+            self._rows[known] = row_of(point.config, point.key, record.status, reason, metrics)
+        return self._rows[known]
 
     def stored(self, key: str) -> StoredPoint:
         """A point with its final state."""

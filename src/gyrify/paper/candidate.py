@@ -1,26 +1,32 @@
-"""One mechanics of the screen: what is known of it, what it can still reach, and which runs it needs next."""
+"""One mechanics with one seed: what is known, what it can still reach, and which runs it needs next."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 from gyrify.config import Config
 from gyrify.errors import ConfigError
 from gyrify.paper.bench import Bench
-from gyrify.paper.cases import EQUAL, SOFT, STAGES, Case
+from gyrify.paper.cases import STAGES, Case
+from gyrify.paper.index import INDICES, Index
 from gyrify.paper.reading import Mechanics, Reading, point_of
-from gyrify.paper.row import GI_DEFINITIONS, GiDefinition, Row, row_of
+from gyrify.paper.row import Row
 from gyrify.paper.scoreboard import Scoreboard, score
 from gyrify.study import Point
 
 _STAGE: Final = {
     case: number for number, stage in reversed(list(enumerate(STAGES.values()))) for case in stage
 }
-_WORST: Final = 10.0
+# What an observation that fails is worth to the search at most, by the part of its checks that pass: it tells
+# two readings apart that agree in whole observations.
+_NEARLY: Final = 0.5
+# What an observation is worth that was left open because the reading had fallen behind.
+_UNKNOWN: Final = 0.25
 
 
 class Candidate:
-    """A mechanics with its scoreboards, one for each definition of the gyrification index.
+    """A mechanics with one seed and its scoreboards, one for each gyrification index.
 
     Parameters
     ----------
@@ -30,29 +36,33 @@ class Candidate:
         The reading, but for its index.
     seed : int
         Seed of the node jitter.
+    indices : sequence of Index
+        What the reading may call gyrification index.
     """
 
-    def __init__(self, base: Config, mechanics: Mechanics, seed: int = 0) -> None:
-        self._base, self.mechanics, self._seed = base, mechanics, seed
+    def __init__(
+        self, base: Config, mechanics: Mechanics, seed: int = 0, indices: Sequence[Index] = INDICES
+    ) -> None:
+        self._base, self.mechanics, self.seed, self.indices = base, mechanics, seed, tuple(indices)
         self._asked: dict[Case, Point] = {}
-        self.rows: dict[GiDefinition, dict[Case, Row]] = {gi: {} for gi in GI_DEFINITIONS}
+        self.rows: dict[Index, dict[Case, Row]] = {gi: {} for gi in self.indices}
         self.impossible = ""
         self._judge()
 
     @property
-    def gi(self) -> GiDefinition:
-        """The definition by which most observations hold, or still can."""
-        return max(GI_DEFINITIONS, key=lambda gi: (self.boards[gi].passed, self.boards[gi].open))
+    def gi(self) -> Index:
+        """The index by which most observations hold, or still can."""
+        return max(self.indices, key=lambda gi: (self.boards[gi].passed, self.boards[gi].open))
 
     @property
-    def reading(self) -> Reading:
-        """Its best reading so far."""
-        return Reading(self.mechanics, self.gi)
+    def board(self) -> Scoreboard:
+        """The scoreboard by that index."""
+        return self.boards[self.gi]
 
     @property
     def passed(self) -> int:
         """Observations that hold at once, at least."""
-        return self.boards[self.gi].passed
+        return self.board.passed
 
     @property
     def bound(self) -> int:
@@ -67,18 +77,14 @@ class Candidate:
         return self.bound > self.passed
 
     @property
-    def misfit(self) -> float:
-        """Distance of both standard indices from the paper's [-], to rank equals."""
-        rows, paper = self.rows[self.gi], {Case(SOFT): 1.29, Case(EQUAL): 1.37}
-        known = [
-            abs(rows[case].gi - gi) for case, gi in paper.items() if case in rows and rows[case].is_complete
-        ]
-        return sum(known) if len(known) == len(paper) else _WORST
-
-    @property
     def n_runs(self) -> int:
         """Runs that are known."""
-        return len(self.rows[self.gi])
+        return len(self.rows[self.indices[0]])
+
+    def value(self, gi: Index) -> float:
+        """What the search climbs: observations that hold, and a part for those that nearly do."""
+        known = {True: 1.0, None: _UNKNOWN}
+        return sum(known.get(row.passed, _NEARLY * row.share) for row in self.boards[gi].rows)
 
     def ask(self) -> list[Point]:
         """The runs it needs next: of those that could decide an open observation, the earliest stage."""
@@ -87,7 +93,7 @@ class Candidate:
         first = min((_STAGE.get(case, len(STAGES)) for case in missing), default=0)
         cases = sorted(case for case in missing if _STAGE.get(case, len(STAGES)) == first)
         try:
-            points = {case: point_of(self._base, self.mechanics, case, self._seed) for case in cases}
+            points = {case: point_of(self._base, self.mechanics, case, self.seed) for case in cases}
         except ConfigError as fault:
             self.impossible = fault.message
             return []
@@ -97,17 +103,14 @@ class Candidate:
     def learn(self, bench: Bench) -> None:
         """Take in what has become known of the runs it has asked for."""
         for case, point in list(self._asked.items()):
-            record = bench.record(point)
-            if record is None:
-                continue
-            del self._asked[case]
-            reason = f"{record.reason} {record.advice}".strip()
-            for gi in GI_DEFINITIONS:
-                told = (record.status, reason, record.summary, gi)
-                self.rows[gi][case] = row_of(point.config, point.key, *told)
+            found = {gi: bench.row(point, gi) for gi in self.indices}
+            for gi, row in found.items():
+                if row is not None:
+                    self.rows[gi][case] = row
+                    self._asked.pop(case, None)
         self._judge()
 
     def _judge(self) -> None:
-        self.boards: dict[GiDefinition, Scoreboard] = {
-            gi: score(self.rows[gi], str(Reading(self.mechanics, gi))) for gi in GI_DEFINITIONS
+        self.boards: dict[Index, Scoreboard] = {
+            gi: score(self.rows[gi], str(Reading(self.mechanics, gi))) for gi in self.indices
         }

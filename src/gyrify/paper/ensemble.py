@@ -10,6 +10,7 @@ from statistics import fmean, stdev
 from gyrify.config import Config
 from gyrify.paper.bench import Bench
 from gyrify.paper.cases import BOTH, Case, ratio_text
+from gyrify.paper.contender import CHOOSING
 from gyrify.paper.reading import Reading
 from gyrify.paper.reproduce import Reproduction, reproduce
 from gyrify.paper.row import Row
@@ -71,6 +72,36 @@ class Ensemble:
     def score(self) -> Spread:
         """Number of observations that hold at once."""
         return spread("observations that hold", [float(m.scoreboard.passed) for m in self.members])
+
+    @property
+    def first_score(self) -> Spread:
+        """The same by the rules that were frozen first."""
+        told = [float(m.scoreboard.first_passed) for m in self.members]
+        return spread("observations that hold by the first rules", told)
+
+    @property
+    def fresh(self) -> Spread:
+        """Number of observations that hold with the seeds that no reading was chosen by."""
+        boards = [m.scoreboard for m in self.members if m.seed not in CHOOSING]
+        return spread("observations that hold with fresh seeds", [float(b.passed) for b in boards])
+
+    @property
+    def scores(self) -> tuple[Spread, ...]:
+        """All three."""
+        return self.score, self.first_score, self.fresh
+
+    @property
+    def told(self) -> str:
+        """Its scores and its fitted constants, in words."""
+        by_seed = ", ".join(str(m.scoreboard.passed) for m in self.members)
+        first = ", ".join(str(m.scoreboard.first_passed) for m in self.members)
+        fitted = self.reading.constants
+        return (
+            f"With seeds {', '.join(str(m.seed) for m in self.members)} {by_seed} observations hold, mean "
+            f"{self.score.mean:.3g}; with those that it was not chosen by {self.fresh.mean:.3g}. By the "
+            f"first rules {first}, mean {self.first_score.mean:.3g}. Fitted constants: {len(fitted)}"
+            + (f" ({', '.join(fitted)})." if fitted else ".")
+        )
 
     def spreads(self) -> list[Spread]:
         """Index and gyri of every case of the paper's figures, and both thresholds."""

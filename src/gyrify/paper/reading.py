@@ -2,25 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from itertools import product
+from dataclasses import dataclass
 from typing import Final
 
 from gyrify.config import Config
-from gyrify.errors import ConfigError
 from gyrify.paper.cases import Case
-from gyrify.paper.row import GI_DEFINITIONS, GiDefinition
+from gyrify.paper.index import STANDARD_INDEX, Index
 from gyrify.study import Point
 
-OUT_OF_PLANE: Final = ("blocked", "none", "generalised")
-STRETCH: Final = ("linear", "exponential")
-ENERGY_PER: Final = ("grown", "reference")
-ELEMENTS: Final = ("linear", "quadratic", "mean_dilatation")
-DISSIPATION: Final = (("drag", 0.13), ("drag", 1.3), ("drag", 5.0), ("kelvin_voigt", 0.1), ("none", 0.0))
-# Numbers between and beside those, for the readings that are best with them.
-FINER: Final = {"drag": (0.013, 0.4, 2.6), "kelvin_voigt": (0.01, 1.0), "none": ()}
-# Node jitter, as a fraction of the local layer: every free mesh is imperfect, and no paper says by how much.
-IMPERFECTIONS: Final = (1e-3, 1e-2, 3e-2, 1e-1)
+# That of the package, fixed before any comparison: every free mesh is imperfect, and no paper says how much.
+STANDARD_IMPERFECTION: Final = 1e-3
+_DIAGONALS: Final = {"one": "one diagonal", "random": "random diagonals", "symmetric": "mirrored diagonals"}
 # Stability is located by a threshold of its own, and costs a quarter of a run.
 _PLAIN: Final = {"stability.detect": False, "stability.follow_branch": False}
 
@@ -45,6 +37,8 @@ class Mechanics:
         Growth along z as a power of that in the plane [-].
     course : str
         Of the dissipation over growth.
+    grading, split : str
+        Layers of the white matter, and diagonals of the mapped quadrilaterals.
     """
 
     out_of_plane: str = "blocked"
@@ -56,6 +50,8 @@ class Mechanics:
     imperfection: float = 1e-3
     exponent: float = 1.0
     course: str = "constant"
+    grading: str = "geometric"
+    split: str = "alternating"
 
     @classmethod
     def of(cls, config: Config) -> Mechanics:
@@ -72,6 +68,8 @@ class Mechanics:
             config.mesh.node_jitter,
             growth.out_of_plane_exponent,
             dissipation.course,
+            config.mesh.grading,
+            config.mesh.split,
         )
 
     @property
@@ -87,14 +85,30 @@ class Mechanics:
             "mesh.node_jitter": self.imperfection,
             "growth.out_of_plane_exponent": self.exponent,
             "dissipation.course": self.course,
+            "mesh.grading": self.grading,
+            "mesh.split": self.split,
         }
+
+    @property
+    def constants(self) -> tuple[str, ...]:
+        """Numbers of it that can be chosen so that the result agrees, and that neither the paper nor anything
+        known before the comparison gives."""
+        fitted = {
+            "exponent": self.exponent not in (0.0, 1.0),
+            "dissipation number": self.dissipation != "none",
+            "imperfection": self.imperfection not in (0.0, STANDARD_IMPERFECTION),
+        }
+        return tuple(name for name, is_fitted in fitted.items() if is_fitted)
 
     def __str__(self) -> str:
         drag = "no dissipation" if self.dissipation == "none" else f"{self.dissipation} {self.number:g}"
         drag += " reduced over growth" if self.course == "reduced" else ""
         jitter = f"imperfection {self.imperfection:g}"
         plane = self.out_of_plane + (f" to the power {self.exponent:g}" if self.exponent != 1.0 else "")
-        words = (plane, self.stretch, self.energy_per, drag, f"{self.element} triangles", jitter)
+        mesh = f"{self.element} triangles"
+        mesh += " in uniform layers" if self.grading == "uniform" else ""
+        mesh += "" if self.split == "alternating" else f" with {_DIAGONALS[self.split]}"
+        words = (plane, self.stretch, self.energy_per, drag, mesh, jitter)
         return ", ".join(words).replace("_", " ").replace("kelvin voigt", "Kelvin-Voigt")
 
 
@@ -106,12 +120,17 @@ class Reading:
     ----------
     mechanics : Mechanics
         What it simulates.
-    gi : {"closing", "hull", "exposed"}
+    gi : Index
         What it calls gyrification index, in every row.
     """
 
     mechanics: Mechanics = Mechanics()
-    gi: GiDefinition = "closing"
+    gi: Index = STANDARD_INDEX
+
+    @property
+    def constants(self) -> tuple[str, ...]:
+        """Its fitted constants, by name."""
+        return (*self.mechanics.constants, *(["closing radius"] if self.gi.is_fitted else []))
 
     def __str__(self) -> str:
         return f"{self.mechanics}; GI by {self.gi}"
@@ -162,50 +181,3 @@ def _as_many_nodes(base: Config, mechanics: Mechanics) -> dict[str, object]:
         "mesh.n_cortex_layers": max(mesh.n_cortex_layers // 2, 2),
         "mesh.inversion_resistance": 0.1,
     }
-
-
-def grid(element: str = "linear") -> list[Mechanics]:
-    """All combinations of the axes with one element."""
-    axes = product(OUT_OF_PLANE, STRETCH, ENERGY_PER, DISSIPATION)
-    return [Mechanics(plane, stretch, per, kind, c, element) for plane, stretch, per, (kind, c) in axes]
-
-
-def variants(mechanics: Mechanics) -> list[Mechanics]:
-    """The same with one thing changed: the element, the number of its dissipation, or the imperfection."""
-    return [
-        *(replace(mechanics, element=element) for element in ELEMENTS if element != mechanics.element),
-        *(replace(mechanics, number=c) for c in _numbers(mechanics.dissipation) if c != mechanics.number),
-        *(replace(mechanics, imperfection=a) for a in IMPERFECTIONS if a != mechanics.imperfection),
-    ]
-
-
-def edges(mechanics: Mechanics) -> list[str]:
-    """What of a reading is the least or the most that was tried, in words."""
-    tried = {
-        "dissipation number": (mechanics.number, _numbers(mechanics.dissipation)),
-        "imperfection": (mechanics.imperfection, list(IMPERFECTIONS)),
-    }
-    return [
-        f"{name} {value:g} is the {'smallest' if value == min(values) else 'largest'} that was tried"
-        for name, (value, values) in tried.items()
-        if len(values) > 1 and value in (min(values), max(values))
-    ]
-
-
-def _numbers(dissipation: str) -> list[float]:
-    """All numbers that are tried with a kind of dissipation."""
-    return sorted([*FINER[dissipation], *(c for kind, c in DISSIPATION if kind == dissipation)])
-
-
-def require_gi(word: str) -> GiDefinition:
-    """A definition of the index by its name.
-
-    Raises
-    ------
-    ConfigError
-        If there is none of that name.
-    """
-    for known in GI_DEFINITIONS:
-        if word == known:
-            return known
-    raise ConfigError(f"gi = {word[:60]!r} is not known.", f"Choose one of {', '.join(GI_DEFINITIONS)}.")

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Final
 
 from gyrify.config import Config
 from gyrify.errors import GyrifyError
 from gyrify.paper.bench import Bench
 from gyrify.paper.cases import BOTH, EQUAL, SOFT, Case, all_cases
 from gyrify.paper.reading import Reading, point_of
-from gyrify.paper.row import Row, row_of
+from gyrify.paper.row import Row
 from gyrify.paper.scoreboard import Scoreboard, score
 from gyrify.paper.stability import HIGHEST, stability_thresholds
-from gyrify.paper.threshold import next_states, next_thresholds, visible_bracket
+from gyrify.paper.threshold import higher_levels, next_higher, next_states, next_thresholds, visible_bracket
+
+# Rows of thresholds, and the stiffness ratio of each.
+_ROWS: Final = {"P12": EQUAL, "P13": SOFT}
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,11 +32,14 @@ class Reproduction:
         Results by case.
     scoreboard : Scoreboard
         How they compare.
+    seed : int
+        Seed of the node jitter.
     """
 
     reading: Reading
     rows: dict[Case, Row]
     scoreboard: Scoreboard
+    seed: int = 0
 
 
 def reproduce(
@@ -67,10 +74,14 @@ def reproduce(
     while todo:
         bench.run([point_of(base, reading.mechanics, case, seed) for case in todo])
         rows |= known_rows(bench, base, reading, todo, seed)
-        searches = (next_thresholds, next_states)
-        todo = [case for e in BOTH for search in searches for case in search(rows, e) if case not in rows]
-    remarks = _stability(bench, base, reading, seed, rows) if stability else {}
-    return Reproduction(reading, rows, score(rows, str(reading), remarks))
+        searches = (next_thresholds, next_higher, next_states)
+        found = dict.fromkeys(case for e in BOTH for search in searches for case in search(rows, e))
+        todo = [case for case in found if case not in rows]
+    remarks = {name: higher_levels(rows, e) for name, e in _ROWS.items()}
+    if stability:
+        lost = _stability(bench, base, reading, seed, rows)
+        remarks = {name: ". ".join(filter(None, (remarks[name], lost[name]))) for name in _ROWS}
+    return Reproduction(reading, rows, score(rows, str(reading), remarks), seed)
 
 
 def known_rows(
@@ -94,10 +105,9 @@ def known_rows(
     found = {}
     for case in cases:
         point = point_of(base, reading.mechanics, case, seed)
-        record = bench.record(point)
-        if record is not None:
-            reason = f"{record.reason} {record.advice}".strip()
-            found[case] = row_of(point.config, point.key, record.status, reason, record.summary, reading.gi)
+        row = bench.row(point, reading.gi)
+        if row is not None:
+            found[case] = row
     return found
 
 
@@ -105,13 +115,12 @@ def _stability(
     bench: Bench, base: Config, reading: Reading, seed: int, rows: dict[Case, Row]
 ) -> dict[str, str]:
     """Remarks on the rows of thresholds; stability is lost before folds are seen."""
-    order = (EQUAL, SOFT)
-    configs = [point_of(base, reading.mechanics, Case(e), seed).config for e in order]
-    seen = [visible_bracket(rows, e) for e in order]
+    configs = [point_of(base, reading.mechanics, Case(e), seed).config for e in _ROWS.values()]
+    seen = [visible_bracket(rows, e) for e in _ROWS.values()]
     ends = [HIGHEST if bracket is None else min(1.1 * bracket.high, HIGHEST) for bracket in seen]
     try:
         found = stability_thresholds(bench, configs, ends)
     except GyrifyError as failure:
         found = [f"not found ({failure.message})"] * 2
     told = "The smooth slice loses stability (no jitter, no dissipation): growth ratio"
-    return {name: f"{told} {value}" for name, value in zip(("P12", "P13"), found, strict=True)}
+    return {name: f"{told} {value}" for name, value in zip(_ROWS, found, strict=True)}

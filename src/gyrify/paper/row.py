@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Final, Literal
+from typing import Any
 
 from gyrify.config import Config
 from gyrify.phenotype import classify, grown_thickness
-from gyrify.study.results import flat
-
-GiDefinition = Literal["closing", "hull", "exposed"]
-GI_DEFINITIONS: Final[tuple[GiDefinition, ...]] = ("closing", "hull", "exposed")
 
 
 @dataclass(frozen=True)
@@ -34,6 +30,8 @@ class Row:
         Cortical thickness at crowns over that at fundi [-].
     sharpness : float
         Turning at fundi over that at crowns [-].
+    breadth, flatness : float
+        Of the gyri, as phenotypes have them [-].
     label, because : str
         Phenotype, and the rule and numbers that gave it.
     key : str
@@ -48,6 +46,8 @@ class Row:
     width: float = 0.0
     crown_fundus: float = 1.0
     sharpness: float = 1.0
+    breadth: float = 0.0
+    flatness: float = 0.0
     label: str = "smooth"
     because: str = ""
     key: str = ""
@@ -58,9 +58,7 @@ class Row:
         return self.status == "completed"
 
 
-def row_of(
-    config: Config, key: str, status: str, reason: str, summary: Mapping[str, Any] | None, gi: GiDefinition
-) -> Row:
+def row_of(config: Config, key: str, status: str, reason: str, metrics: Mapping[str, Any] | None) -> Row:
     """Row of a run that has ended.
 
     Parameters
@@ -71,27 +69,25 @@ def row_of(
         Its folder.
     status, reason : str
         How it ended.
-    summary : mapping or None
-        As in ``summary.json``.
-    gi : {"closing", "hull", "exposed"}
-        Definition of the gyrification index.
+    metrics : mapping or None
+        Names as in ``metrics.csv``, and ``gi``; see `gyrify.paper.index.index_metrics`.
 
     Returns
     -------
     Row
     """
-    if status != "completed" or summary is None:
+    if status != "completed" or metrics is None:
         return Row(status if status != "completed" else "failed", reason, key=key)
-    metrics = flat(summary)
-    index = metrics[f"gi_{gi}"]
     phenotype = classify(metrics, grown_thickness(config))
     return Row(
-        gi=float("inf") if index is None else index,
+        gi=float("inf") if metrics["gi"] is None else metrics["gi"],
         n_gyri=metrics["n_gyri"],
         depth=metrics["sulcal_depth_mm_mean"],
         width=metrics["gyrus_width_mm"],
         crown_fundus=phenotype.numbers["crown_fundus"],
         sharpness=metrics["fold_sharpness"],
+        breadth=phenotype.numbers["breadth"],
+        flatness=phenotype.numbers["flatness"],
         label=phenotype.label,
         because=f"{phenotype.rule}: {phenotype.because}",
         key=key,

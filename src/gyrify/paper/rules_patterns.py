@@ -17,21 +17,46 @@ UNIFORM: Final = 1.222
 # Half way between a sine wave, 1, and the cusps of |cos|, about 2.
 CUSPED: Final = 1.5
 HEALTHY: Final = ("normal", "sinusoidal")
+UNFOLDED: Final = ("smooth", "lissencephaly")
+# Geometric mean of as many and twice as many; sulci that are very shallow beside others; and gyri that have
+# merged: as wide as a whole normal fold, twice as flat as a cosine. The numbers are those of phenotypes.
+MORE: Final = 2**0.5
+SHALLOW: Final = 0.5
+WIDE: Final = 1.0
+FLAT: Final = 0.667
+VERY_THICK: Final = (Case(SOFT, thickness=THICK[0]), Case(EQUAL, thickness=THICK[1]))
 
 
 def p6(rows: Rows) -> Verdict:
     """Smooth at 1/3."""
-    return _labelled(rows, (Case(STIFFNESS[0]),), "smooth")
+    return labelled(rows, (Case(STIFFNESS[0]),), "smooth")
 
 
 def p7(rows: Rows) -> Verdict:
     """Lissencephaly at 1/2.61."""
-    return _labelled(rows, (Case(STIFFNESS[1]),), "lissencephaly")
+    return labelled(rows, (Case(STIFFNESS[1]),), "lissencephaly")
 
 
 def p8(rows: Rows) -> Verdict:
-    """Pachygyria at 1/2."""
-    return _labelled(rows, (Case(STIFFNESS[2]),), "pachygyria")
+    """Pachygyria at 1/2: shallow sulci between gyri that have merged."""
+    case, one = Case(STIFFNESS[2]), Case(SOFT)
+    checks = (
+        _folded(rows, case),
+        check(
+            rows,
+            (case, one),
+            lambda a, b: a.depth <= SHALLOW * b.depth,
+            lambda a, b: f"mean depth {a.depth:.1f} mm against {b.depth:.1f} at {one}",
+        ),
+        check(
+            rows,
+            (case, one),
+            lambda a, b: MORE * a.n_gyri <= b.n_gyri or (a.breadth >= WIDE and a.flatness >= FLAT),
+            lambda a, b: f"{a.n_gyri} gyri, flat to {a.flatness:.2f}, against {b.n_gyri} at {one}",
+        ),
+    )
+    text = shown(rows, (case,), lambda r: f"{r.n_gyri} gyri, {r.depth:.1f} mm, GI {r.gi:.3f}, {r.label}")
+    return Verdict(text, checks)
 
 
 def p9(rows: Rows) -> Verdict:
@@ -52,7 +77,7 @@ def p9(rows: Rows) -> Verdict:
 def p10(rows: Rows) -> Verdict:
     """Sinusoidal folds of a stiff cortex."""
     cases = tuple(Case(stiffness) for stiffness in STIFFNESS[5:])
-    verdict = _labelled(rows, cases, "sinusoidal")
+    verdict = labelled(rows, cases, "sinusoidal")
     return Verdict(shown(rows, cases, lambda r: f"{r.label} ({r.crown_fundus:.2f})"), verdict.checks)
 
 
@@ -87,30 +112,37 @@ def p15(rows: Rows) -> Verdict:
 
 def p16(rows: Rows) -> Verdict:
     """A thin cortex."""
-    return _against_standard(
+    return against_standard(
         rows,
         0.75,
-        "polymicrogyria",
-        lambda thin, one: thin.n_gyri > one.n_gyri,
+        (),
+        lambda thin, one: thin.n_gyri >= MORE * one.n_gyri,
         lambda thin, one: thin.depth < one.depth,
     )
 
 
 def p17(rows: Rows) -> Verdict:
     """A thick cortex."""
-    return _against_standard(
+    return against_standard(
         rows,
         3.0,
-        "pachygyria",
-        lambda thick, one: thick.n_gyri < one.n_gyri and thick.width > one.width,
+        (),
+        lambda thick, one: MORE * thick.n_gyri <= one.n_gyri and thick.width > one.width,
         lambda thick, one: thick.depth > one.depth,
     )
 
 
 def p18(rows: Rows) -> Verdict:
     """A very thick cortex."""
-    named = (Case(SOFT, thickness=THICK[0]), Case(EQUAL, thickness=THICK[1]))
-    earlier = [
+    checks = [_has_label(rows, case, UNFOLDED) for case in VERY_THICK]
+    checks += [_folded(rows, Case(e, thickness=3.0)) for e in BOTH]
+    text = shown(rows, VERY_THICK, lambda r: f"{r.label} (GI {r.gi:.3f})")
+    return Verdict(text, (*checks, *softer_earlier(rows)))
+
+
+def softer_earlier(rows: Rows) -> list[Check]:
+    """At both thicknesses the softer cortex has no higher index."""
+    return [
         check(
             rows,
             (Case(SOFT, thickness=t), Case(EQUAL, thickness=t)),
@@ -121,8 +153,10 @@ def p18(rows: Rows) -> Verdict:
         )
         for t in THICK
     ]
-    verdict = _labelled(rows, named, "lissencephaly")
-    return Verdict(shown(rows, named, lambda r: f"{r.label} (GI {r.gi:.3f})"), (*verdict.checks, *earlier))
+
+
+def _folded(rows: Rows, case: Case) -> Check:
+    return _one(rows, case, lambda r: r.label not in UNFOLDED, lambda r: f"{r.label} ({r.because})")
 
 
 def _one(rows: Rows, case: Case, test: Callable[[Row], bool], text: Callable[[Row], str]) -> Check:
@@ -133,7 +167,7 @@ def _has_label(rows: Rows, case: Case, labels: tuple[str, ...]) -> Check:
     return _one(rows, case, lambda r: r.label in labels, lambda r: f"{r.label} ({r.because})")
 
 
-def _labelled(rows: Rows, cases: tuple[Case, ...], label: str) -> Verdict:
+def labelled(rows: Rows, cases: tuple[Case, ...], label: str) -> Verdict:
     text = shown(rows, cases, lambda row: f"{row.label} (GI {row.gi:.3f})")
     return Verdict(text, tuple(_has_label(rows, case, (label,)) for case in cases))
 
@@ -193,13 +227,14 @@ def _lower(rows: Rows, stiffness: float, thickness: float) -> Check:
     )
 
 
-def _against_standard(
+def against_standard(
     rows: Rows,
     thickness: float,
-    label: str,
+    labels: tuple[str, ...],
     number: Callable[[Row, Row], bool],
     depth: Callable[[Row, Row], bool],
 ) -> Verdict:
+    """Number, depth and index beside those of the standard thickness; of these labels, or else folded."""
     checks = []
     for stiffness in BOTH:
         case = Case(stiffness, thickness=thickness)
@@ -213,7 +248,7 @@ def _against_standard(
                 lambda a, b, case=case: f"mean depth {a.depth:.1f} mm against {b.depth:.1f} at {case}",
             ),
             _lower(rows, stiffness, thickness),
-            _has_label(rows, case, (label,)),
+            _has_label(rows, case, labels) if labels else _folded(rows, case),
         ]
     cases = [Case(stiffness, thickness=thickness) for stiffness in BOTH]
     text = shown(rows, cases, lambda r: f"{r.n_gyri} gyri, {r.depth:.1f} mm, GI {r.gi:.3f}, {r.label}")

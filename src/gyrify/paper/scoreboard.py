@@ -7,7 +7,7 @@ from typing import Any
 
 from gyrify.paper.cases import Case
 from gyrify.paper.observations import observations
-from gyrify.paper.verdict import Rows
+from gyrify.paper.verdict import Rows, Verdict
 
 
 @dataclass(frozen=True)
@@ -24,6 +24,10 @@ class ScoreRow:
         How they are compared.
     passed : bool or None
         None where runs are missing.
+    first_passed : bool or None
+        The same by the rule that was frozen first.
+    share : float
+        Part of the rule's checks that pass; half counts for one that is open [-].
     note : str
         Why it fails, or what else is to be known.
     missing : tuple of Case
@@ -37,6 +41,8 @@ class ScoreRow:
     ours: str
     rule: str
     passed: bool | None
+    first_passed: bool | None
+    share: float
     note: str
     missing: tuple[Case, ...] = ()
 
@@ -62,6 +68,11 @@ class Scoreboard:
         return sum(row.passed is True for row in self.rows)
 
     @property
+    def first_passed(self) -> int:
+        """Rows that pass by the rules that were frozen first."""
+        return sum(row.first_passed is True for row in self.rows)
+
+    @property
     def open(self) -> int:
         """Rows that are undecided."""
         return sum(row.passed is None for row in self.rows)
@@ -73,12 +84,13 @@ class Scoreboard:
 
     def as_dict(self, wall_s: float) -> dict[str, Any]:
         """Fields as in ``gyrify paper --json``."""
-        names = ("id", "paper", "ours", "rule", "passed", "note")
+        names = ("id", "paper", "ours", "rule", "passed", "first_passed", "note")
         rows = [{name: getattr(row, name) for name in names} for row in self.rows]
         return {
             "reading": self.reading,
             "rows": rows,
             "passed": self.passed,
+            "first_passed": self.first_passed,
             "total": len(self.rows),
             "wall_s": wall_s,
         }
@@ -103,13 +115,26 @@ def score(rows: Rows, reading: str, remarks: dict[str, str] | None = None) -> Sc
     found = []
     for observation in observations():
         verdict = observation.judge(rows)
+        first = verdict if not observation.reason else observation.first_judge(rows)
         remark = (remarks or {}).get(observation.id, "")
-        note = ". ".join(part for part in (_sentence(verdict.note), remark) if part)
         names = {name: getattr(observation, name) for name in ("id", "statement", "where", "paper", "rule")}
         found.append(
-            ScoreRow(ours=verdict.ours, passed=verdict.passed, note=note, missing=verdict.missing, **names)
+            ScoreRow(
+                ours=verdict.ours,
+                passed=verdict.passed,
+                first_passed=first.passed,
+                share=_share(verdict),
+                note=". ".join(part for part in (_sentence(verdict.note), remark) if part),
+                missing=verdict.missing,
+                **names,
+            )
         )
     return Scoreboard(reading, tuple(found))
+
+
+def _share(verdict: Verdict) -> float:
+    worth = {True: 1.0, None: 0.5, False: 0.0}
+    return sum(worth[check.passed] for check in verdict.checks) / len(verdict.checks)
 
 
 def _sentence(text: str) -> str:

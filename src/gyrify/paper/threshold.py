@@ -11,6 +11,8 @@ from gyrify.paper.verdict import Check, Rows, Verdict
 
 # Gyrification index above which folding is obvious.
 VISIBLE: Final = 1.005
+# Higher levels at which the growth ratio is told beside it, since no sentence of the paper has a number.
+HIGHER: Final = (1.01, 1.02)
 STATES: Final = ("smooth", "lissencephaly", "pachygyria", "normal")
 
 
@@ -47,8 +49,8 @@ def growth_series(rows: Rows, stiffness: float) -> list[Case]:
     )
 
 
-def visible_bracket(rows: Rows, stiffness: float) -> Bracket | None:
-    """Where the index first passes `VISIBLE`; None where it does so nowhere, or everywhere.
+def visible_bracket(rows: Rows, stiffness: float, level: float = VISIBLE) -> Bracket | None:
+    """Where the index first passes a level; None where it does so nowhere, or everywhere.
 
     Parameters
     ----------
@@ -56,13 +58,15 @@ def visible_bracket(rows: Rows, stiffness: float) -> Bracket | None:
         What is known.
     stiffness : float
         Stiffness ratio [-].
+    level : float
+        Gyrification index from which folds count as seen [-].
 
     Returns
     -------
     Bracket or None
     """
     for below, above in pairwise(growth_series(rows, stiffness)):
-        if rows[below].gi <= VISIBLE < rows[above].gi:
+        if rows[below].gi <= level < rows[above].gi:
             return Bracket(below.growth, above.growth)
     return None
 
@@ -101,10 +105,26 @@ def threshold_verdict(rows: Rows, stiffness: float) -> Verdict:
     return Verdict(ours, (Check(None, f"not yet located: {ours}", missing),))
 
 
-def next_thresholds(rows: Rows, stiffness: float) -> list[Case]:
+def next_thresholds(rows: Rows, stiffness: float, level: float = VISIBLE) -> list[Case]:
     """The one case that would locate the threshold better; none where it is located, or not there."""
-    bracket = visible_bracket(rows, stiffness)
+    bracket = visible_bracket(rows, stiffness, level)
     return [] if bracket is None or bracket.is_narrow else [Case(stiffness, bracket.value)]
+
+
+def next_higher(rows: Rows, stiffness: float) -> list[Case]:
+    """The same at the higher levels, each case once."""
+    return list(dict.fromkeys(c for level in HIGHER for c in next_thresholds(rows, stiffness, level)))
+
+
+def higher_levels(rows: Rows, stiffness: float) -> str:
+    """Growth ratios at the higher levels and whether they would agree, in words."""
+    paper, told = PAPER_THRESHOLD[stiffness], []
+    for level in HIGHER:
+        bracket = visible_bracket(rows, stiffness, level)
+        if bracket is not None:
+            agrees = abs(bracket.value - paper) <= AGREES * paper
+            told.append(f"{level:g} is passed at {bracket.value:.3f} ({'' if agrees else 'not '}within 5 %)")
+    return f"GI {' and '.join(told)}" if told else ""
 
 
 def next_states(rows: Rows, stiffness: float) -> list[Case]:

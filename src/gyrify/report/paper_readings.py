@@ -2,35 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from html import escape
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
-from gyrify.paper.candidate import Candidate
+from gyrify.paper.contender import CHOOSING, Contender
 from gyrify.paper.ensemble import Ensemble
+from gyrify.paper.exclusion import exclusions
 from gyrify.paper.observations import observations
-from gyrify.paper.row import GI_DEFINITIONS
-from gyrify.paper.scoreboard import Scoreboard
-from gyrify.paper.screen import Screening
+from gyrify.paper.search import League, Search
 from gyrify.report.paper_page import html_table, page
-from gyrify.report.paper_tables import MARKS, csv_text, markdown_table, write_text
+from gyrify.report.paper_tables import csv_text, markdown_table, write_text
 
-SHOWN: Final = 40
-_SIGNS: Final = {True: "✓", False: "✗", None: "·"}
-_AXES: Final = ("out_of_plane", "stretch", "energy_per", "dissipation", "number", "element", "imperfection")
-_LEGEND: Final = "✓ holds, ✗ does not, · left open. "
-_WHY_OPEN: Final = (
-    "With all that is open such a reading would still not be among the best three: it was not run to the end."
+SHOWN: Final = 12
+TITLE: Final = "Readings of Wang, Yao and Hu (2019), ranked"
+_AXES: Final = (
+    *("out_of_plane", "exponent", "stretch", "energy_per", "dissipation", "number", "course"),
+    *("element", "grading", "split", "imperfection"),
 )
+_LEAGUES: Final = {
+    True: "With fitted constants",
+    False: "Without fitted constants",
+}
+_LEGEND: Final = (
+    "In the columns P1 to P18, the number of seeds with which an observation holds; · where it was left "
+    "open, since the reading had fallen behind. Holds: mean over the seeds that were run."
+)
+Block = tuple[str, str, Sequence[str], Sequence[Sequence[object]]]
 
 
-def write_readings(screening: Screening, ensembles: Sequence[Ensemble], folder: Path) -> list[Path]:
+def write_readings(found: Search, ensembles: Sequence[Ensemble], folder: Path) -> list[Path]:
     """Write ``readings.csv``, ``.md`` and ``.html``, and ``seeds.csv`` where there are ensembles.
 
     Parameters
     ----------
-    screening : Screening
+    found : Search
         The ranking.
     ensembles : sequence of Ensemble
         The best readings with several seeds.
@@ -43,9 +50,9 @@ def write_readings(screening: Screening, ensembles: Sequence[Ensemble], folder: 
         The files.
     """
     texts = {
-        "readings.csv": readings_csv(screening),
-        "readings.md": readings_markdown(screening, ensembles),
-        "readings.html": readings_page(screening, ensembles),
+        "readings.csv": readings_csv(found),
+        "readings.md": readings_markdown(found, ensembles),
+        "readings.html": readings_page(found, ensembles),
     }
     if ensembles:
         texts["seeds.csv"] = seeds_csv(ensembles)
@@ -54,23 +61,25 @@ def write_readings(screening: Screening, ensembles: Sequence[Ensemble], folder: 
     return [folder / name for name in texts]
 
 
-def readings_csv(screening: Screening) -> str:
-    """The full matrix: one line per mechanics and definition of the index, best mechanics first."""
+def readings_csv(found: Search) -> str:
+    """One line per mechanics, with its best index."""
     ids = [observation.id for observation in observations()]
-    names = ("rank", *_AXES, "gi", "passed", "open", *ids, "runs", "remark")
+    names = ("rank", "constants", "proposed", *_AXES, "gi", "passed", "seeds", *ids, "runs", "remark")
     lines = [
         (
             rank,
-            *(getattr(candidate.mechanics, axis) for axis in _AXES),
-            gi,
-            board.passed,
-            board.open,
-            *(MARKS[row.passed] for row in board.rows),
-            candidate.n_runs,
-            candidate.impossible,
+            len(c.reading.constants),
+            c.origin,
+            *(getattr(c.mechanics, axis) for axis in _AXES),
+            str(c.gi),
+            f"{c.passed:.4g}",
+            len(c.candidates),
+            *_marks(c),
+            c.n_runs,
+            c.impossible or ("" if c.is_complete else "fell behind"),
         )
-        for rank, candidate in enumerate(screening.candidates, start=1)
-        for gi, board in ((gi, candidate.boards[gi]) for gi in GI_DEFINITIONS)
+        for league in (found.fitted, found.free)
+        for rank, c in enumerate(league.ranked, start=1)
     ]
     return csv_text(names, lines)
 
@@ -80,84 +89,124 @@ def seeds_csv(ensembles: Sequence[Ensemble]) -> str:
     lines = [
         (number, str(e.reading), s.name, f"{s.mean:.6g}", f"{s.deviation:.6g}", s.n)
         for number, e in enumerate(ensembles, start=1)
-        for s in (e.score, *e.spreads())
+        for s in (*e.scores, *e.spreads())
     ]
     return csv_text(("rank", "reading", "quantity", "mean", "standard_deviation", "n"), lines)
 
 
-def readings_markdown(screening: Screening, ensembles: Sequence[Ensemble]) -> str:
-    """Ranking with the matrix, and the best with several seeds."""
-    names, lines = _matrix(screening)
-    blocks = ["# Readings of Wang, Yao and Hu (2019), ranked", _summary(screening), _legend(screening)]
-    blocks.append(markdown_table(names, lines))
-    for ensemble in ensembles:
-        blocks += [f"## {ensemble.reading}", _members(ensemble), markdown_table(*_passes(ensemble))]
-        blocks.append(markdown_table(("quantity", "mean ± standard deviation"), _spreads(ensemble)))
+def readings_markdown(found: Search, ensembles: Sequence[Ensemble]) -> str:
+    """Ranking, what guidance and constants bring, what excludes what, and the best with several seeds."""
+    blocks = [f"# {TITLE}", summary(found)]
+    for heading, text, names, lines in _blocks(found, ensembles):
+        blocks += [f"## {heading}", *([text] if text else []), markdown_table(names, lines)]
     return "\n\n".join(blocks) + "\n"
 
 
-def readings_page(screening: Screening, ensembles: Sequence[Ensemble]) -> str:
+def readings_page(found: Search, ensembles: Sequence[Ensemble]) -> str:
     """The same as an HTML page."""
-    names, lines = _matrix(screening)
-    blocks = [f"<p>{escape(_summary(screening))}</p><p class='small'>{escape(_legend(screening))}</p>"]
-    blocks.append(html_table(names, lines))
-    for ensemble in ensembles:
-        blocks.append(f"<h2>{escape(str(ensemble.reading))}</h2><p>{escape(_members(ensemble))}</p>")
-        blocks.append(html_table(*_passes(ensemble)))
-        blocks.append(html_table(("quantity", "mean ± standard deviation"), _spreads(ensemble)))
-    return page("Readings of Wang, Yao and Hu (2019), ranked", *blocks)
+    blocks = [f"<p>{escape(summary(found))}</p>"]
+    for heading, text, names, lines in _blocks(found, ensembles):
+        blocks += [f"<h2>{escape(heading)}</h2>", f"<p class='small'>{escape(text)}</p>" if text else ""]
+        blocks.append(html_table(names, lines))
+    return page(TITLE, *blocks)
 
 
-def _matrix(screening: Screening) -> tuple[list[str], list[list[object]]]:
-    """Heading and lines of the ranking, one line per mechanics with its best index."""
-    names = ["", "reading", "holds", "at most", *(observation.id for observation in observations())]
-    return names, [_line(rank, c) for rank, c in enumerate(screening.candidates[:SHOWN], start=1)]
-
-
-def _line(rank: int, candidate: Candidate) -> list[object]:
-    board = candidate.boards[candidate.gi]
-    name = (
-        f"{candidate.reading} (impossible: {candidate.impossible})"
-        if candidate.impossible
-        else candidate.reading
-    )
-    return [rank, name, candidate.passed, candidate.bound, *_marks(board)]
-
-
-def _marks(board: Scoreboard) -> list[str]:
-    return [_SIGNS[row.passed] for row in board.rows]
-
-
-def _summary(screening: Screening) -> str:
-    n, open_ones = len(screening.candidates), sum(c.is_open for c in screening.candidates)
-    runs = sum(c.n_runs for c in screening.candidates)
+def summary(found: Search) -> str:
+    """How much was searched, in words."""
+    contenders = [*found.fitted.contenders, *found.free.contenders]
     told = (
-        f"{n} mechanics, each with three definitions of the gyrification index; {runs} runs with one seed. "
+        f"{len(contenders)} readings in {found.rounds} rounds, {sum(c.n_runs for c in contenders)} runs; "
+        f"chosen by seeds {', '.join(map(str, CHOOSING))}, and given up once they could no longer be among "
+        "the best three."
     )
-    if screening.is_complete:
-        told += f"The best three are certain; {open_ones} were given up before their end."
-    else:
-        told += (
-            f"Time ran out: {screening.live} could still be among the best three. Run the same command again."
+    told += "" if found.is_complete else " Time ran out: run the same command again to go on."
+    return told + (f" {found.note}" if found.note else "")
+
+
+def _blocks(found: Search, ensembles: Sequence[Ensemble]) -> Iterator[Block]:
+    for league in (found.fitted, found.free):
+        if league.contenders:
+            yield (_LEAGUES[league.is_fitted], _LEGEND, *_matrix(league))
+    yield "What guidance brings", "", *_origins(found)
+    yield "What constants bring", "", *_constants(found)
+    pairs = list(_pairs(found))
+    if pairs:
+        told = (
+            "Pairs of which each was seen to hold, and never both, among all scoreboards in which both are "
+            "decided: every reading, seed and index counts as one."
         )
-    told += f" {screening.note}" if screening.note else ""
-    hidden = n - min(n, SHOWN)
-    return told + (f" The best {SHOWN} are shown; readings.csv has all." if hidden else "")
+        yield "What was never seen together", told, ("pair", "decided", "first alone", "second alone"), pairs
+    for ensemble in ensembles:
+        yield str(ensemble.reading), ensemble.told, *_passes(ensemble)
+        yield (
+            "",
+            "",
+            ("quantity", "mean ± standard deviation"),
+            [(s.name, str(s)) for s in ensemble.spreads()],
+        )
 
 
-def _legend(screening: Screening) -> str:
-    return (_LEGEND + (_WHY_OPEN if screening.is_complete else "")).strip()
+def _matrix(league: League) -> tuple[list[str], list[list[object]]]:
+    """Heading and lines of a ranking, one line per mechanics with its best index."""
+    names = ["", "reading", "fitted", "proposed", "holds", *(o.id for o in observations())]
+    lines: list[list[object]] = [
+        [rank, c.reading, len(c.reading.constants), c.origin, f"{c.passed:.3g}", *_marks(c)]
+        for rank, c in enumerate(league.ranked[:SHOWN], start=1)
+    ]
+    return names, lines
 
 
-def _members(ensemble: Ensemble) -> str:
-    scores = ", ".join(str(member.scoreboard.passed) for member in ensemble.members)
-    return f"{len(ensemble.members)} seeds: {scores} observations hold, {ensemble.score}."
+def _marks(contender: Contender) -> list[str]:
+    boards = [candidate.boards[contender.gi] for candidate in contender.candidates]
+    columns = zip(*(board.rows for board in boards), strict=True)
+    return [
+        "·" if any(row.passed is None for row in column) else str(sum(row.passed is True for row in column))
+        for column in columns
+    ]
+
+
+def _origins(found: Search) -> tuple[Sequence[str], list[list[object]]]:
+    """The best of what chance and what the surrogate proposed, as many of each."""
+    names = ("", "proposed", "readings", "came to their end", "best mean")
+    lines: list[list[object]] = []
+    for league in (found.fitted, found.free):
+        for origin in ("known", "random", "guided"):
+            own = [c for c in league.contenders if c.origin == origin]
+            if own:
+                ends = [c.passed for c in own if c.is_complete]
+                best = f"{max(ends):.3g}" if ends else "–"
+                lines.append([_LEAGUES[league.is_fitted], origin, len(own), len(ends), best])
+    return names, lines
+
+
+def _constants(found: Search) -> tuple[Sequence[str], list[list[object]]]:
+    """The best reading for each number of fitted constants."""
+    everyone: list[Any] = [c for league in (found.fitted, found.free) for c in league.ranked if c.is_complete]
+    best: dict[int, Contender] = {}
+    for contender in everyone:
+        number = len(contender.reading.constants)
+        if number not in best or contender.passed > best[number].passed:
+            best[number] = contender
+    lines: list[list[object]] = [
+        [number, ", ".join(c.reading.constants) or "none", f"{c.passed:.3g}", c.reading]
+        for number, c in sorted(best.items())
+    ]
+    return ("fitted constants", "which", "best mean", "reading"), lines
+
+
+def _pairs(found: Search) -> Iterator[tuple[object, ...]]:
+    boards = (
+        board
+        for league in (found.fitted, found.free)
+        for contender in league.contenders
+        for candidate in contender.candidates
+        for board in candidate.boards.values()
+    )
+    for pair in exclusions(boards):
+        if pair.is_exclusive:
+            yield f"{pair.one}, {pair.other}", pair.decided, pair.only_one, pair.only_other
 
 
 def _passes(ensemble: Ensemble) -> tuple[list[str], list[list[object]]]:
     passes = ensemble.passes
     return [*passes], [[f"{count}/{len(ensemble.members)}" for count in passes.values()]]
-
-
-def _spreads(ensemble: Ensemble) -> list[tuple[str, str]]:
-    return [(s.name, str(s)) for s in ensemble.spreads()]

@@ -1,0 +1,229 @@
+"""The search of readings: a surrogate and chance propose, and what has fallen behind is given up.
+
+Readings are chosen by seeds 0 to 2. Half of the proposals are random, so that what guidance brings is seen,
+and readings with and without fitted constants are ranked apart. What becomes of a reading depends on its own
+runs and on the ranking before its round: the same versions give the same search with any number of workers,
+and the same call goes on where another ended.
+"""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Final
+
+from gyrify.config import Config
+from gyrify.extras import require
+from gyrify.paper.bench import Bench
+from gyrify.paper.contender import Contender, Origin
+from gyrify.paper.reading import Mechanics
+from gyrify.paper.space import edges, mechanics_of, parameters_of
+from gyrify.study import Point
+
+BEST: Final = 3
+ROUNDS: Final = 20
+# Mean number of observations that the first readings have to exceed.
+FLOOR: Final = 8.0
+# Proposals of a round, guided and random each; readings without fitted constants are few.
+_PROPOSALS: Final = {True: 4, False: 1}
+_STARTUP: Final = 12
+# Known before the search: the preset of before, the frozen reading, and growth between none and full along z.
+KNOWN: Final = (
+    Mechanics("generalised", number=2.6, imperfection=1e-2),
+    Mechanics(),
+    Mechanics("generalised", "exponential", number=2.6, imperfection=0.1, exponent=0.13, course="reduced"),
+)
+
+
+@dataclass(frozen=True)
+class SearchProgress:
+    """What an observer sees after each batch of runs.
+
+    Attributes
+    ----------
+    round, rounds : int
+        The round, and how many there are; round 0 is what was known before.
+    runs, readings : int
+        Runs that are known, and mechanics that were proposed.
+    best : float
+        Mean number of observations that hold in the best so far.
+    reading : str
+        That reading.
+    """
+
+    round: int
+    rounds: int
+    runs: int
+    readings: int
+    best: float
+    reading: str
+
+
+class League:
+    """Readings that are ranked together: with fitted constants, or without."""
+
+    def __init__(self, base: Config, is_fitted: bool, seed: int = 0) -> None:
+        optuna = require("optuna", "search", "The search of readings")
+        optuna.logging.set_verbosity(optuna.logging.WARNING)
+        self._base, self.is_fitted, self._optuna = base, is_fitted, optuna
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
+            guided = optuna.samplers.TPESampler(
+                n_startup_trials=_STARTUP, multivariate=True, group=True, constant_liar=True, seed=seed
+            )
+        self._guided = optuna.create_study(sampler=guided, direction="maximize")
+        self._random = optuna.create_study(sampler=optuna.samplers.RandomSampler(seed=seed))
+        self.contenders: list[Contender] = []
+
+    @property
+    def ranked(self) -> list[Contender]:
+        """Best first: those that came to their end, then by what holds, nearly holds, and by the indices."""
+        return sorted(
+            {c.mechanics: c for c in reversed(self.contenders)}.values(),
+            key=lambda c: (not c.is_complete, -c.passed, -c.value, c.misfit, c.mechanics),
+        )
+
+    @property
+    def level(self) -> float:
+        """Mean number of observations that hold in the third best, or what is asked of the first ones."""
+        best = [c for c in self.ranked if c.is_complete][:BEST]
+        return best[-1].passed if len(best) == BEST else FLOOR
+
+    def begin(self) -> list[tuple[Contender, Any]]:
+        """What was known before as contenders, each with the trial that takes its value."""
+        known = KNOWN if self.is_fitted else ()
+        return [self._contender(self._known(mechanics), "known") for mechanics in known]
+
+    def propose(self) -> list[tuple[Contender, Any]]:
+        """Contenders of a round."""
+        found = []
+        for _ in range(_PROPOSALS[self.is_fitted]):
+            found.append(self._contender(self._random.ask(), "random"))
+            found.append(self._contender(self._guided.ask(), "guided"))
+        return found
+
+    def learn(self, found: Iterable[tuple[Contender, Any]]) -> None:
+        """Take in what has become of a round's contenders."""
+        for contender, trial in found:
+            self.contenders.append(contender)
+            if contender.origin == "random":
+                told = self._optuna.trial.create_trial(
+                    params=trial.params, distributions=trial.distributions, value=contender.value
+                )
+                self._guided.add_trial(told)
+            else:
+                self._guided.tell(trial, contender.value)
+
+    def _known(self, mechanics: Mechanics) -> Any:
+        self._guided.enqueue_trial(parameters_of(mechanics))
+        return self._guided.ask()
+
+    def _contender(self, trial: Any, origin: Origin) -> tuple[Contender, Any]:
+        mechanics = mechanics_of(trial, is_fitted=self.is_fitted)
+        return Contender(self._base, mechanics, origin, self.is_fitted, self.level), trial
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """Result of a search.
+
+    Attributes
+    ----------
+    fitted, free : League
+        Readings with fitted constants, and without.
+    rounds : int
+        Rounds that came to their end.
+    is_complete : bool
+        Whether all did; else time ran out, and the same call goes on.
+    """
+
+    fitted: League
+    free: League
+    rounds: int
+    is_complete: bool
+
+    @property
+    def note(self) -> str:
+        """What of the best reading lies on the edge of what was tried; empty where nothing does."""
+        best = self.fitted.ranked[:1]
+        found = edges(best[0].mechanics) if best else []
+        return f"In the best reading {' and '.join(found)}: a better one may lie beyond." if found else ""
+
+
+def search(
+    bench: Bench,
+    base: Config,
+    *,
+    rounds: int = ROUNDS,
+    until: float = float("inf"),
+    tell: Callable[[SearchProgress], None] = lambda _: None,
+) -> Search:
+    """Look for the readings by which most observations hold at once.
+
+    Parameters
+    ----------
+    bench : Bench
+        Who computes.
+    base : Config
+        Everything that no reading changes.
+    rounds : int
+        Rounds of proposals.
+    until : float
+        Time of `time.perf_counter` from which no batch is begun [s].
+    tell : callable
+        Called with a `SearchProgress` after each batch.
+
+    Returns
+    -------
+    Search
+
+    Raises
+    ------
+    ConfigError
+        If optuna, which proposes, is not installed.
+    """
+    fitted, free = League(base, True), League(base, False)
+    for number in range(rounds + 1):
+        news = (fitted.propose(), free.propose()) if number else (fitted.begin(), free.begin())
+        group = [contender for new in news for contender, _ in new]
+        say = partial(_say, tell, bench, (number, rounds), fitted, free, group)
+        if not _race(bench, group, until, say):
+            return Search(fitted, free, max(number - 1, 0), False)
+        for league, new in zip((fitted, free), news, strict=True):
+            league.learn(new)
+    return Search(fitted, free, rounds, True)
+
+
+def _say(
+    tell: Callable[[SearchProgress], None],
+    bench: Bench,
+    at: tuple[int, int],
+    fitted: League,
+    free: League,
+    group: list[Contender],
+) -> None:
+    best = (fitted.ranked or group)[0]
+    readings = len(fitted.contenders) + len(free.contenders) + len(group)
+    tell(SearchProgress(*at, len(bench.records), readings, best.passed, str(best.reading)))
+
+
+def _race(bench: Bench, group: list[Contender], until: float, say: Callable[[], None]) -> bool:
+    """Run a round's contenders to their ends, or until they have fallen behind; false where time is over."""
+    while True:
+        points: dict[str, Point] = {}
+        asking = []
+        for contender in group:
+            new = contender.ask()
+            points |= {point.key: point for point in new}
+            asking += [contender] if new else []
+        if not asking:
+            return True
+        if time.perf_counter() >= until:
+            return False
+        bench.run(list(points.values()))
+        for contender in asking:
+            contender.learn(bench)
+        say()
