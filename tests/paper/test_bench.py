@@ -13,6 +13,7 @@ from gyrify.errors import SolveError
 from gyrify.paper import Case
 from gyrify.paper.bench import Bench
 from gyrify.paper.cases import EQUAL, SOFT
+from gyrify.paper.index import Index
 from gyrify.paper.reading import Mechanics, Reading, point_of
 from gyrify.paper.reproduce import known_rows
 from gyrify.paper.stability import FILE, stability_thresholds
@@ -41,7 +42,7 @@ def test_points_are_run_once_and_remembered(tmp_path: Path) -> None:
     assert read_results(tmp_path)["growth.ratio"].to_pylist() == [3.6, 3.6, 1.0]
     assert seen[-1].done == 1
     with Bench(tmp_path) as again:
-        assert again.record(POINTS[0]) is None
+        assert again.row(POINTS[0], Index()) is None
         again.run(POINTS)
         assert again.computed == 0
         rows = known_rows(again, BASE, Reading(), (Case(EQUAL), Case(SOFT), Case(2.0)), 0)

@@ -8,12 +8,12 @@ from types import ModuleType
 
 import pytest
 from fake_bench import FakeBench
+from gyrify.paper.screen import screen
 
 from gyrify.config import Config
 from gyrify.paper.candidate import Candidate
 from gyrify.paper.ensemble import repeat
 from gyrify.paper.reading import grid
-from gyrify.paper.screen import screen
 from gyrify.report.paper_readings import write_readings
 from gyrify.report.paper_tables import scoreboard_markdown, write_text
 

@@ -2,45 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from statistics import fmean, stdev
+from typing import get_args
 
 import pytest
 from fake_bench import FakeBench
 
 from gyrify.config import Config
-from gyrify.errors import ConfigError
 from gyrify.paper import Case, all_cases
 from gyrify.paper.cases import EQUAL, SOFT
 from gyrify.paper.ensemble import SEEDS, best_first, repeat, spread
-from gyrify.paper.reading import Mechanics, Reading, grid, point_of, require_gi, variants
+from gyrify.paper.index import GiDefinition, Index
+from gyrify.paper.reading import Mechanics, Reading, point_of
 from gyrify.paper.reproduce import reproduce
+from gyrify.paper.search import KNOWN
 
-
-def test_the_grid_has_every_combination_once() -> None:
-    assert len(grid()) == len(set(grid())) == 3 * 2 * 2 * 5
-    assert {one.element for one in grid("quadratic")} == {"quadratic"}
-
-
-def test_variants_change_the_element_the_number_or_the_imperfection_and_only_one() -> None:
-    this = Mechanics(number=0.13)
-    found = variants(this)
-    assert len(found) == len(set(found))
-    assert {one.element for one in found} == {"linear", "quadratic", "mean_dilatation"}
-    assert {one.number for one in found} == {0.013, 0.13, 0.4, 1.3, 2.6, 5.0}
-    assert {one.imperfection for one in found} == {1e-3, 1e-2, 3e-2, 1e-1}
-    for one in found:
-        restored = (
-            replace(one, **{key: getattr(this, key)}) for key in ("element", "number", "imperfection")
-        )
-        assert one != this
-        assert this in restored
+SEVERAL = [Mechanics(plane, number=c) for plane in ("blocked", "none") for c in (0.13, 1.3, 2.6)]
 
 
 def test_a_mechanics_is_read_from_a_configuration_and_written_back() -> None:
-    for one in grid("quadratic")[::7]:
-        if (one.out_of_plane, one.dissipation) == ("generalised", "kelvin_voigt"):
-            continue
+    for one in (*KNOWN, Mechanics("none", dissipation="kelvin_voigt", grading="uniform", split="random")):
         assert Mechanics.of(Config().with_overrides(one.overrides)) == one
     assert Mechanics.of(Config()) == Mechanics()
 
@@ -72,17 +53,11 @@ def test_every_case_is_another_run() -> None:
     assert len(keys) == len(all_cases())
 
 
-@pytest.mark.parametrize("word", ["closing", "hull", "exposed"])
-def test_definitions_of_the_index(word: str) -> None:
-    assert require_gi(word) == word
-    with pytest.raises(ConfigError, match="gi = 'convex'"):
-        require_gi("convex")
-
-
 def test_the_index_of_the_reading_is_used_in_every_row() -> None:
     bench = FakeBench()
     closing, hull = (
-        reproduce(bench, Config(), Reading(Mechanics(), gi), stability=False) for gi in ("closing", "hull")
+        reproduce(bench, Config(), Reading(Mechanics(), Index(gi)), stability=False)
+        for gi in get_args(GiDefinition)[:2]
     )
     case = Case(EQUAL)
     assert hull.rows[case].gi - 1 == pytest.approx(1.2 * (closing.rows[case].gi - 1))
@@ -101,11 +76,17 @@ def test_several_seeds() -> None:
     assert set(found.passes.values()) <= set(range(len(SEEDS) + 1))
     assert found.passes["P1"] == len(SEEDS)
     assert found.score.n == len(SEEDS)
+    fresh = [m.scoreboard.passed for m in found.members if m.seed in (3, 4)]
+    assert (found.fresh.n, found.fresh.mean) == (2, fmean(fresh))
+    first = [m.scoreboard.first_passed for m in found.members]
+    assert found.first_score.mean == fmean(first)
+    assert "Fitted constants: 1 (dissipation number)." in found.told
+    assert ", ".join(str(m.scoreboard.passed) for m in found.members) in found.told
 
 
 def test_ensembles_are_put_in_order_by_their_mean() -> None:
     bench = FakeBench()
-    found = [repeat(bench, Config(), Reading(one), stability=False) for one in grid()[:20:4]]
+    found = [repeat(bench, Config(), Reading(one), stability=False) for one in SEVERAL]
     ordered = best_first(found)
     means = [one.score.mean for one in ordered]
     assert means == sorted(means, reverse=True)
@@ -129,3 +110,11 @@ def test_growth_along_z_and_the_course_of_dissipation_are_part_of_a_reading() ->
     assert Mechanics.of(point.config) == own
     assert str(own).startswith("generalised to the power 0.13, linear, grown, drag 2.6 reduced over growth, ")
     assert "power" not in str(Mechanics())
+
+
+def test_the_mesh_is_part_of_a_reading() -> None:
+    own = Mechanics(grading="uniform", split="one", imperfection=0.0)
+    point = point_of(Config(), own, Case(), 0)
+    mesh = point.config.mesh
+    assert (mesh.grading, mesh.split, mesh.node_jitter) == ("uniform", "one", 0.0)
+    assert "linear triangles in uniform layers with one diagonal, imperfection 0" in str(own)

@@ -9,8 +9,8 @@ import pytest
 from gyrify import Config, critical_growth
 from gyrify.convergence.verdict import judge
 from gyrify.paper import stability
-from gyrify.paper.reading import Mechanics, edges
-from gyrify.paper.screen import Screening
+from gyrify.paper.reading import Mechanics
+from gyrify.paper.space import edges
 from gyrify.report.onset_curve import onset_curve
 from gyrify.threshold.critical import _edges
 from gyrify.threshold.result import Crossing, Scanned
@@ -89,14 +89,16 @@ def test_an_order_that_is_trusted_has_no_note() -> None:
 
 def test_a_reading_says_what_of_it_is_the_most_that_was_tried() -> None:
     assert edges(Mechanics(number=0.4, imperfection=1e-2)) == []
-    assert edges(Mechanics(number=5.0, imperfection=1e-2)) == [
-        "dissipation number 5 is the largest that was tried"
+    assert edges(Mechanics(number=10.0, imperfection=1e-2)) == [
+        "dissipation number 10 is the largest that was tried"
+    ]
+    assert edges(Mechanics(number=0.01, imperfection=0.0)) == [
+        "dissipation number 0.01 is the smallest that was tried"
     ]
     assert edges(Mechanics(number=0.4, imperfection=1e-1)) == [
         "imperfection 0.1 is the largest that was tried"
     ]
     assert edges(Mechanics(dissipation="none", number=0.0, imperfection=1e-2)) == []
-    assert Screening((), True, 0).note == ""
 
 
 def test_a_map_says_what_it_is_where_no_curve_runs(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -203,15 +203,24 @@ def _show(found: Reproduction) -> None:
     from rich.table import Table
     from rich.text import Text
 
+    from gyrify.report.paper_tables import FIRST, by_first_rule, held
+
     marks = {True: Text("pass", "bold green"), False: Text("FAIL", "bold red"), None: Text("open", "yellow")}
     board = found.scoreboard
     title = f"Reading: {board.reading}"
-    table = Table("", "The paper says", "paper", "ours", "", title=title, title_justify="left")
+    table = Table("", "The paper says", "paper", "ours", "", FIRST, title=title, title_justify="left")
     for row in board.rows:
-        table.add_row(row.id, Text(row.statement), Text(row.paper), Text(row.ours), marks[row.passed])
+        table.add_row(
+            row.id,
+            Text(row.statement),
+            Text(row.paper),
+            Text(row.ours),
+            marks[row.passed],
+            by_first_rule(row),
+        )
     console = Console(width=None if os.isatty(1) else 140, highlight=False)
     console.print(table)
     for row in board.rows:
         if row.note:
             console.print(Text(f"{row.id}: {row.note}."))
-    console.print(Text(f"{board.passed} of {len(board.rows)} observations hold.", "bold"))
+    console.print(Text(held(board), "bold"))

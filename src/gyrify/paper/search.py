@@ -75,7 +75,7 @@ class League:
                 n_startup_trials=_STARTUP, multivariate=True, group=True, constant_liar=True, seed=seed
             )
         self._guided = optuna.create_study(sampler=guided, direction="maximize")
-        self._random = optuna.create_study(sampler=optuna.samplers.RandomSampler(seed=seed))
+        self._random = optuna.create_study(sampler=optuna.samplers.RandomSampler(seed=seed + 1))
         self.contenders: list[Contender] = []
 
     @property

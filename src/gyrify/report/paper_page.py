@@ -8,7 +8,7 @@ from typing import Final
 
 from gyrify.paper.scoreboard import Scoreboard
 from gyrify.report.paper_layout import LAYOUTS
-from gyrify.report.paper_tables import MARKS, SYMBOLS
+from gyrify.report.paper_tables import FIRST, MARKS, SYMBOLS, by_first_rule, held, rule_told
 
 _STYLE: Final = """
 body { font: 15px/1.5 system-ui, sans-serif; color: #1f1f1f; max-width: 70rem;
@@ -42,10 +42,14 @@ def scoreboard_page(board: Scoreboard, figures: str = "figures") -> str:
         HTML.
     """
     rows = [
-        (r.id, r.statement, r.paper, r.ours, MARKS[r.passed], r.note, f"{r.rule} ({r.where})")
+        (
+            *(r.id, r.statement, r.paper, r.ours, MARKS[r.passed], by_first_rule(r), r.note),
+            f"{rule_told(r)} ({r.where})",
+        )
         for r in board.rows
     ]
-    names = ("", "The paper says", "Paper", "Ours", "", "Note", "Rule, and where the paper says so")
+    told = "Rule, and where the paper says so"
+    names = ("", "The paper says", "Paper", "Ours", "", FIRST.capitalize(), "Note", told)
     pictures = (
         f'<figure id="{x.name}"><img src="{figures}/{x.name}.png" alt="{escape(x.caption)}">'
         f"<figcaption><b>{escape(x.name.replace('-', ' ').capitalize())}.</b> {escape(x.caption)} "
@@ -54,8 +58,7 @@ def scoreboard_page(board: Scoreboard, figures: str = "figures") -> str:
     )
     return page(
         "Wang, Yao and Hu (2019), reproduced",
-        f"<p>Reading: {escape(board.reading)}. {escape(SYMBOLS)}</p>"
-        f"<p><b>{board.passed} of {len(board.rows)}</b> observations hold.</p>",
+        f"<p>Reading: {escape(board.reading)}. {escape(SYMBOLS)}</p><p><b>{escape(held(board))}</b></p>",
         html_table(names, rows),
         "<h2>Figures</h2>",
         *pictures,

@@ -1,0 +1,192 @@
+"""The search gives up readings only where they have fallen behind, and is the same whoever computes."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from types import SimpleNamespace
+
+import optuna
+import pytest
+from fake_bench import FakeBench
+
+from gyrify.config import Config
+from gyrify.paper.candidate import Candidate
+from gyrify.paper.cases import EQUAL, SOFT, Case
+from gyrify.paper.contender import CHOOSING, Contender
+from gyrify.paper.index import INDICES, STANDARD_INDEX
+from gyrify.paper.reading import Mechanics, Reading
+from gyrify.paper.reproduce import reproduce
+from gyrify.paper.search import BEST, FLOOR, KNOWN, League, Search, SearchProgress, search
+from gyrify.paper.space import ELEMENTS, EXPONENT, IMPERFECTION, NUMBER, SPLIT, mechanics_of, parameters_of
+from gyrify.report.paper_readings import readings_csv
+from gyrify.study import Point
+
+BASE = Config()
+ROUNDS = 3
+
+
+@pytest.fixture(scope="module")
+def found() -> Search:
+    return search(FakeBench(workers=2), BASE, rounds=ROUNDS)
+
+
+def random_mechanics(n: int, *, is_fitted: bool = True) -> list[Mechanics]:
+    study = optuna.create_study(sampler=optuna.samplers.RandomSampler(seed=7))
+    return [mechanics_of(study.ask(), is_fitted=is_fitted) for _ in range(n)]
+
+
+def exhausted(mechanics: Mechanics) -> dict[object, list[int]]:
+    """Observations that hold with each choosing seed, by index, with everything run."""
+    bench = FakeBench()
+    return {
+        gi: [
+            reproduce(bench, BASE, Reading(mechanics, gi), seed=seed, stability=False).scoreboard.passed
+            for seed in CHOOSING
+        ]
+        for gi in INDICES
+    }
+
+
+def raced(contender: Contender) -> FakeBench:
+    bench = FakeBench()
+    while points := contender.ask():
+        bench.run(points)
+        contender.learn(bench)
+    return bench
+
+
+def test_what_is_among_the_best_has_the_score_of_everything_run(found: Search) -> None:
+    best = [c for c in found.fitted.ranked if c.is_complete][:BEST]
+    assert len(best) == BEST
+    for contender in best:
+        known = exhausted(contender.mechanics)
+        assert contender.passed == pytest.approx(sum(known[contender.gi]) / len(CHOOSING))
+        assert contender.passed == pytest.approx(max(sum(n) for n in known.values()) / len(CHOOSING))
+
+
+@pytest.mark.parametrize("mechanics", random_mechanics(8), ids=str)
+def test_given_up_means_not_above_the_level(mechanics: Mechanics) -> None:
+    contender = Contender(BASE, mechanics, "random", True, level=11.0)
+    if not contender.ask():
+        assert contender.impossible
+        return
+    bench = raced(contender)
+    whole = FakeBench()
+    for seed in CHOOSING:
+        reproduce(whole, BASE, Reading(mechanics), seed=seed, stability=False)
+    if contender.is_complete:
+        return
+    assert len(bench.asked) < len(whole.asked)
+    known = exhausted(mechanics)
+    seeds = len(contender.candidates)
+    if seeds == 1:
+        assert max(n[0] for n in known.values()) < 11.0 - 1.0
+    else:
+        assert all(sum(known[gi]) / seeds <= 11.0 for gi in contender.candidates[-1].indices)
+
+
+def test_a_reading_that_cannot_be_run_says_why() -> None:
+    impossible = Mechanics("generalised", dissipation="kelvin_voigt", number=0.1)
+    contender = Contender(BASE, impossible, "random", True, FLOOR)
+    assert contender.ask() == []
+    assert "generalised" in contender.impossible
+    assert not contender.is_complete
+
+
+def test_the_search_is_the_same_with_any_number_of_workers(found: Search) -> None:
+    assert readings_csv(search(FakeBench(workers=1), BASE, rounds=ROUNDS)) == readings_csv(found)
+
+
+def test_it_stops_in_time_and_goes_on(found: Search) -> None:
+    bench, seen = FakeBench(), list[SearchProgress]()
+
+    class Limited(FakeBench):
+        def run(self, points: Sequence[Point]) -> None:
+            super().run(points)
+            if len(self.asked) > 300:
+                raise KeyboardInterrupt
+
+    stopped = search(bench, BASE, rounds=ROUNDS, until=time.perf_counter())
+    assert (stopped.is_complete, stopped.rounds, bench.asked) == (False, 0, [])
+    limited = Limited()
+    with pytest.raises(KeyboardInterrupt):
+        search(limited, BASE, rounds=ROUNDS)
+    bench.records = dict(limited.records)
+    done = search(bench, BASE, rounds=ROUNDS, tell=seen.append)
+    assert readings_csv(done) == readings_csv(found)
+    assert not {point.key for point in bench.asked} & {point.key for point in limited.asked}
+    assert (seen[0].round, seen[-1].round, seen[-1].rounds) == (0, ROUNDS, ROUNDS)
+    assert seen[-1].best == max(c.passed for c in done.fitted.ranked if c.is_complete)
+
+
+def test_both_leagues_keep_to_what_they_may_fit(found: Search) -> None:
+    assert {c.mechanics for c in found.fitted.contenders} >= set(KNOWN)
+    for contender in found.free.contenders:
+        assert contender.reading.constants == ()
+        assert contender.mechanics.exponent in EXPONENT
+    fitted = {len(c.reading.constants) for c in found.fitted.contenders}
+    assert max(fitted) >= 3
+    origins = [c.origin for c in found.fitted.contenders]
+    assert origins.count("random") == origins.count("guided") == 4 * ROUNDS
+    assert origins.count("known") == len(KNOWN)
+
+
+def test_the_surrogate_climbs() -> None:
+    """It learns from values alone which of two elements is worth more."""
+    league = League(BASE, True)
+    for _ in range(30):
+        news = [
+            (SimpleNamespace(origin=c.origin, value=float(c.mechanics.element == ELEMENTS[1])), trial)
+            for c, trial in league.propose()
+        ]
+        league.learn(news)  # type: ignore[arg-type]
+    late = [c.mechanics.element for _ in range(5) for c, _ in league.propose() if c.origin == "guided"]
+    assert late.count(ELEMENTS[1]) > 0.6 * len(late)
+
+
+def test_proposals_span_the_axes_and_are_spoken_of_in_two_digits() -> None:
+    many = random_mechanics(200)
+    for axis, choices in {"element": ELEMENTS, "split": SPLIT}.items():
+        assert {getattr(one, axis) for one in many} == set(choices)
+    assert 0.0 in {one.imperfection for one in many}
+    assert all(IMPERFECTION[0] <= one.imperfection <= IMPERFECTION[1] for one in many if one.imperfection)
+    assert all(NUMBER[0] <= one.number <= NUMBER[1] for one in many if one.dissipation != "none")
+    assert all(one.exponent == 1.0 for one in many if one.out_of_plane == "none")
+    assert all(float(f"{one.number:.2g}") == one.number for one in many)
+    assert {one.dissipation for one in random_mechanics(20, is_fitted=False)} == {"none"}
+
+
+@pytest.mark.parametrize("mechanics", [*KNOWN, *random_mechanics(5)], ids=str)
+def test_a_mechanics_can_be_proposed_again(mechanics: Mechanics) -> None:
+    trial = optuna.trial.FixedTrial(parameters_of(mechanics))
+    assert mechanics_of(trial, is_fitted=True) == mechanics
+
+
+def test_a_failed_run_fails_what_it_decides() -> None:
+    bench, one = FakeBench(), Candidate(BASE, Mechanics(number=6.0))
+    while points := one.ask():
+        bench.run(points)
+        one.learn(bench)
+    rows = {row.id: row for row in one.boards[STANDARD_INDEX].rows}
+    assert rows["P11"].passed is False
+    assert "Stalled." in rows["P11"].note
+
+
+def test_both_standard_slices_are_run_first() -> None:
+    for mechanics in KNOWN:
+        points = Candidate(BASE, mechanics).ask()
+        assert {point.parameters["material.stiffness_ratio"] for point in points} == {SOFT, EQUAL}
+
+
+def test_whole_observations_are_worth_more_than_many_that_nearly_hold() -> None:
+    one = Candidate(BASE, Mechanics())
+    assert one.value(STANDARD_INDEX) == pytest.approx(2 + 16 * 0.25)
+    bench = FakeBench()
+    while points := one.ask():
+        bench.run(points)
+        one.learn(bench)
+    for gi in INDICES:
+        passed = one.boards[gi].passed
+        assert passed <= one.value(gi) <= passed + 0.5 * (18 - passed)
+    assert Case(EQUAL) in one.rows[STANDARD_INDEX]
