@@ -54,7 +54,7 @@ def test_other_radii_agree_with_a_run_that_has_them(tmp_path: Path) -> None:
         bench.run(points)
         rows = {gi: bench.row(points[0], gi) for gi in INDICES}
         assert rows[Index("closing", 7.0)] is not None
-        told = [row for row in (rows[Index("closing", 7.0)], bench.row(points[1], Index("closing", 7.0)))]
+        told = rows[Index("closing", 7.0)], bench.row(points[1], Index("closing", 7.0))
     assert told[0] is not None
     assert told[1] is not None
     assert (told[0].gi, told[0].depth, told[0].label) == (told[1].gi, told[1].depth, told[1].label)

@@ -111,7 +111,7 @@ def test_a_figure_has_a_panel_per_case_and_says_what_is_missing(layout: object) 
 
 def test_ranking(tmp_path: Path) -> None:
     bench = FakeBench(workers=2)
-    found = search(bench, Config(), rounds=2)
+    found = search(bench, Config(), rounds=1)
     ensembles = [repeat(bench, Config(), found.fitted.ranked[0].reading, (0, 3), stability=False)]
     files = write_readings(found, ensembles, tmp_path)
     assert {file.name for file in files} == {"readings.csv", "readings.md", "readings.html", "seeds.csv"}
@@ -122,7 +122,7 @@ def test_ranking(tmp_path: Path) -> None:
     assert [int(row["constants"]) for row in rows] == [len(c.reading.constants) for c in everyone]
     text, page = readings_markdown(found, ensembles), readings_page(found, ensembles)
     assert str(found.fitted.ranked[0].reading) in text
-    assert f"{len(everyone)} readings in 2 rounds" in text
+    assert f"{len(everyone)} readings in 1 rounds" in text
     for heading in (
         "With fitted",
         "Without fitted",
@@ -130,7 +130,7 @@ def test_ranking(tmp_path: Path) -> None:
         "What constants",
         "never seen together",
     ):
-        assert f" {heading}" in text or f"{heading}" in text
+        assert heading in text
         assert heading in page
     members = ensembles[0].members
     assert f"With seeds 0, 3 {', '.join(str(m.scoreboard.passed) for m in members)} obs" in text

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
-from types import SimpleNamespace
+from collections.abc import Iterator, Sequence
 
 import optuna
 import pytest
@@ -23,11 +22,19 @@ from gyrify.report.paper_readings import readings_csv
 from gyrify.study import Point
 
 BASE = Config()
-ROUNDS = 3
+ROUNDS = 2
+FEW = (INDICES[0], INDICES[2], INDICES[5])
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _few_indices() -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("gyrify.paper.contender.INDICES", FEW)
+        yield
 
 
 @pytest.fixture(scope="module")
-def found() -> Search:
+def found(_few_indices: None) -> Search:
     return search(FakeBench(workers=2), BASE, rounds=ROUNDS)
 
 
@@ -44,7 +51,7 @@ def exhausted(mechanics: Mechanics) -> dict[object, list[int]]:
             reproduce(bench, BASE, Reading(mechanics, gi), seed=seed, stability=False).scoreboard.passed
             for seed in CHOOSING
         ]
-        for gi in INDICES
+        for gi in FEW
     }
 
 
@@ -104,7 +111,7 @@ def test_it_stops_in_time_and_goes_on(found: Search) -> None:
     class Limited(FakeBench):
         def run(self, points: Sequence[Point]) -> None:
             super().run(points)
-            if len(self.asked) > 300:
+            if len(self.asked) > 200:
                 raise KeyboardInterrupt
 
     stopped = search(bench, BASE, rounds=ROUNDS, until=time.perf_counter())
@@ -121,7 +128,9 @@ def test_it_stops_in_time_and_goes_on(found: Search) -> None:
 
 
 def test_both_leagues_keep_to_what_they_may_fit(found: Search) -> None:
-    assert {c.mechanics for c in found.fitted.contenders} >= set(KNOWN)
+    everyone = [c.mechanics for c in found.fitted.contenders]
+    assert set(everyone) >= set(KNOWN)
+    assert len(set(everyone)) > 0.9 * len(everyone)
     for contender in found.free.contenders:
         assert contender.reading.constants == ()
         assert contender.mechanics.exponent in EXPONENT
@@ -132,17 +141,15 @@ def test_both_leagues_keep_to_what_they_may_fit(found: Search) -> None:
     assert origins.count("known") == len(KNOWN)
 
 
-def test_the_surrogate_climbs() -> None:
-    """It learns from values alone which of two elements is worth more."""
+def test_the_surrogate_climbs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It learns from values alone which of three elements is worth more."""
+    wanted = ELEMENTS[1]
+    monkeypatch.setattr(Contender, "value", property(lambda self: float(self.mechanics.element == wanted)))
     league = League(BASE, True)
-    for _ in range(30):
-        news = [
-            (SimpleNamespace(origin=c.origin, value=float(c.mechanics.element == ELEMENTS[1])), trial)
-            for c, trial in league.propose()
-        ]
-        league.learn(news)  # type: ignore[arg-type]
-    late = [c.mechanics.element for _ in range(5) for c, _ in league.propose() if c.origin == "guided"]
-    assert late.count(ELEMENTS[1]) > 0.6 * len(late)
+    for _ in range(8):
+        league.learn(league.propose())
+    last = [c.mechanics.element for c in league.contenders if c.origin == "guided"][-12:]
+    assert last.count(wanted) > 0.6 * len(last)
 
 
 def test_proposals_span_the_axes_and_are_spoken_of_in_two_digits() -> None:
