@@ -117,6 +117,7 @@ def hide(monkeypatch: pytest.MonkeyPatch, module: str) -> None:
         ("meshio", "meshio", "export", ["export", "RUN", "--format", "vtu"]),
         ("imageio_ffmpeg", "imageio-ffmpeg", "video", ["animate", "RUN", "--out", "growth.mp4"]),
         ("distributed", "distributed", "cluster", ["study", "STUDY", "--scheduler", "tcp://localhost:1"]),
+        ("optuna", "optuna", "search", ["paper", "--readings", "--workers", "1", "--quiet"]),
     ],
 )
 def test_a_missing_extra_is_a_usage_error_that_names_it(

@@ -58,6 +58,7 @@ class FakeBench:
         self.folder, self.workers = Path(), workers
         self.records: dict[str, Record] = {}
         self.asked: list[Point] = []
+        self.core_minutes = 0.0
 
     def run(self, points: Sequence[Point]) -> None:
         for point in points:

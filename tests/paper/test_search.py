@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
+from dataclasses import fields
 
+import numpy as np
 import optuna
 import pytest
 from fake_bench import FakeBench
@@ -14,6 +16,7 @@ from gyrify.paper.candidate import Candidate
 from gyrify.paper.cases import EQUAL, SOFT, Case
 from gyrify.paper.contender import CHOOSING, Contender
 from gyrify.paper.index import INDICES, STANDARD_INDEX
+from gyrify.paper.neighbour import neighbour
 from gyrify.paper.reading import Mechanics, Reading
 from gyrify.paper.reproduce import reproduce
 from gyrify.paper.search import BEST, FLOOR, KNOWN, League, Search, SearchProgress, search
@@ -137,7 +140,8 @@ def test_both_leagues_keep_to_what_they_may_fit(found: Search) -> None:
     fitted = {len(c.reading.constants) for c in found.fitted.contenders}
     assert max(fitted) >= 3
     origins = [c.origin for c in found.fitted.contenders]
-    assert origins.count("random") == origins.count("guided") == 4 * ROUNDS
+    assert origins.count("random") == 4 * ROUNDS
+    assert origins.count("surrogate") == origins.count("neighbour") == 2 * ROUNDS
     assert origins.count("known") == len(KNOWN)
 
 
@@ -146,10 +150,28 @@ def test_the_surrogate_climbs(monkeypatch: pytest.MonkeyPatch) -> None:
     wanted = ELEMENTS[1]
     monkeypatch.setattr(Contender, "value", property(lambda self: float(self.mechanics.element == wanted)))
     league = League(BASE, True)
-    for _ in range(8):
-        league.learn(league.propose())
-    last = [c.mechanics.element for c in league.contenders if c.origin == "guided"][-12:]
+    for number in range(12):
+        league.learn(league.propose(number))
+    last = [c.mechanics.element for c in league.contenders if c.origin == "surrogate"][-12:]
     assert last.count(wanted) > 0.6 * len(last)
+
+
+def test_neighbours_differ_in_little_and_make_sense() -> None:
+    rng, parent = np.random.default_rng(3), KNOWN[2]
+    drawn = random_mechanics(200)
+    found = [neighbour(parent, one, rng) for one in drawn]
+    assert parent not in found
+    names = [field.name for field in fields(parent)]
+    differing = [sum(getattr(one, n) != getattr(parent, n) for n in names) for one in found]
+    assert 1 <= sum(differing) / len(differing) <= 4
+    assert len(set(found)) > 180
+    near = [one for one in found if one.dissipation == "drag" and one.number != parent.number]
+    assert sum(1.3 < one.number < 5.2 for one in near) > 0.7 * len(near)
+    for one in found:
+        assert one.exponent == 1.0 or one.out_of_plane != "none"
+        assert (one.number == 0.0) is (one.dissipation == "none")
+        assert mechanics_of(optuna.trial.FixedTrial(parameters_of(one)), is_fitted=True) == one
+    assert found == [neighbour(parent, one, np.random.default_rng(3)) for one in drawn[:1]] + found[1:]
 
 
 def test_proposals_span_the_axes_and_are_spoken_of_in_two_digits() -> None:

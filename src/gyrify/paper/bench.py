@@ -76,6 +76,11 @@ class Bench:
         self.points |= {point.key: point for point in todo}
         self.records |= result.records
 
+    @property
+    def core_minutes(self) -> float:
+        """Time that all known runs took, on one core each [min]."""
+        return sum(record.wall_s for record in self.records.values()) / 60
+
     def call(self, work: Callable[..., Any], *arguments: object) -> Callable[[], Any]:
         """Begin other work in one of the processes; the answer is had by calling what is returned."""
         if self._executor is None:

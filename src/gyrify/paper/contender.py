@@ -13,7 +13,7 @@ from gyrify.paper.index import INDICES, Index
 from gyrify.paper.reading import Mechanics, Reading
 from gyrify.study import Point
 
-Origin = Literal["known", "random", "guided"]
+Origin = Literal["known", "random", "surrogate", "neighbour"]
 # Seeds by which readings are chosen; others stay fresh for the score.
 CHOOSING: Final = (0, 1, 2)
 # By how many observations another seed may do better than the first, at most, before a reading is given up.
@@ -31,7 +31,7 @@ class Contender:
         Everything that no reading changes.
     mechanics : Mechanics
         The reading, but for its index.
-    origin : {"known", "random", "guided"}
+    origin : {"known", "random", "surrogate", "neighbour"}
         Who proposed it.
     is_fitted : bool
         Whether fitted constants are allowed, the radius of the index among them.

@@ -1,4 +1,4 @@
-"""The search of readings: a surrogate and chance propose, and what has fallen behind is given up.
+"""The search of readings: chance and two guides propose, and what has fallen behind is given up.
 
 Readings are chosen by seeds 0 to 2. Half of the proposals are random, so that what guidance brings is seen,
 and readings with and without fitted constants are ranked apart. What becomes of a reading depends on its own
@@ -15,20 +15,25 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Final
 
+import numpy as np
+
 from gyrify.config import Config
 from gyrify.extras import require
 from gyrify.paper.bench import Bench
 from gyrify.paper.contender import Contender, Origin
+from gyrify.paper.neighbour import neighbour
 from gyrify.paper.reading import Mechanics
 from gyrify.paper.space import edges, mechanics_of, parameters_of
 from gyrify.study import Point
 
 BEST: Final = 3
-ROUNDS: Final = 20
+ROUNDS: Final = 16
 # Mean number of observations that the first readings have to exceed.
 FLOOR: Final = 8.0
-# Proposals of a round, guided and random each; readings without fitted constants are few.
-_PROPOSALS: Final = {True: 4, False: 1}
+# Proposals of a round with fitted constants: as many by chance as by the others together.
+_FITTED: Final[tuple[Origin, ...]] = (*("random",) * 4, *("surrogate",) * 2, *("neighbour",) * 2)
+# Those without, in every second round: they are few.
+_FREE: Final[tuple[Origin, ...]] = ("random", "surrogate")
 _STARTUP: Final = 12
 # Known before the search: the preset of before, the frozen reading, and growth between none and full along z.
 KNOWN: Final = (
@@ -75,7 +80,10 @@ class League:
                 n_startup_trials=_STARTUP, multivariate=True, group=True, constant_liar=True, seed=seed
             )
         self._guided = optuna.create_study(sampler=guided, direction="maximize")
-        self._random = optuna.create_study(sampler=optuna.samplers.RandomSampler(seed=seed + 1))
+        self._random, self._drawn = (
+            optuna.create_study(sampler=optuna.samplers.RandomSampler(seed=seed + i)) for i in (1, 2)
+        )
+        self._rng = np.random.default_rng(seed)
         self.contenders: list[Contender] = []
 
     @property
@@ -97,13 +105,19 @@ class League:
         known = KNOWN if self.is_fitted else ()
         return [self._contender(self._known(mechanics), "known") for mechanics in known]
 
-    def propose(self) -> list[tuple[Contender, Any]]:
-        """Contenders of a round."""
-        found = []
-        for _ in range(_PROPOSALS[self.is_fitted]):
-            found.append(self._contender(self._random.ask(), "random"))
-            found.append(self._contender(self._guided.ask(), "guided"))
-        return found
+    def propose(self, number: int) -> list[tuple[Contender, Any]]:
+        """Contenders of a round of this number."""
+        if not self.is_fitted and number % 2:
+            return []
+        return [self._contender(self._trial(o), o) for o in (_FITTED if self.is_fitted else _FREE)]
+
+    def _trial(self, origin: Origin) -> Any:
+        parents = [c.mechanics for c in self.ranked if c.is_complete][:BEST]
+        if origin == "neighbour" and parents:
+            parent = parents[int(self._rng.integers(len(parents)))]
+            drawn = mechanics_of(self._drawn.ask(), is_fitted=True)
+            return self._known(neighbour(parent, drawn, self._rng))
+        return self._random.ask() if origin == "random" else self._guided.ask()
 
     def learn(self, found: Iterable[tuple[Contender, Any]]) -> None:
         """Take in what has become of a round's contenders."""
@@ -138,12 +152,15 @@ class Search:
         Rounds that came to their end.
     is_complete : bool
         Whether all did; else time ran out, and the same call goes on.
+    core_minutes : float
+        Time that all runs took, on one core each [min].
     """
 
     fitted: League
     free: League
     rounds: int
     is_complete: bool
+    core_minutes: float
 
     @property
     def note(self) -> str:
@@ -187,14 +204,14 @@ def search(
     """
     fitted, free = League(base, True), League(base, False)
     for number in range(rounds + 1):
-        news = (fitted.propose(), free.propose()) if number else (fitted.begin(), free.begin())
+        news = (fitted.propose(number), free.propose(number)) if number else (fitted.begin(), free.begin())
         group = [contender for new in news for contender, _ in new]
         say = partial(_say, tell, bench, (number, rounds), fitted, free, group)
         if not _race(bench, group, until, say):
-            return Search(fitted, free, max(number - 1, 0), False)
+            return Search(fitted, free, max(number - 1, 0), False, bench.core_minutes)
         for league, new in zip((fitted, free), news, strict=True):
             league.learn(new)
-    return Search(fitted, free, rounds, True)
+    return Search(fitted, free, rounds, True, bench.core_minutes)
 
 
 def _say(

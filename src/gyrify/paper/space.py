@@ -59,7 +59,7 @@ def mechanics_of(trial: optuna.trial.BaseTrial, *, is_fitted: bool) -> Mechanics
     kind = one_of("dissipation", DISSIPATION) if is_fitted else "none"
     if kind == "none":
         return found
-    number = _rounded(trial.suggest_float("number", *NUMBER, log=True))
+    number = rounded(trial.suggest_float("number", *NUMBER, log=True))
     return replace(found, dissipation=kind, number=number, course=one_of("course", COURSE))
 
 
@@ -99,9 +99,10 @@ def _imperfection(trial: optuna.trial.BaseTrial, is_fitted: bool) -> float:
     if trial.suggest_categorical("perfect", (False, True)):
         return 0.0
     if is_fitted:
-        return _rounded(trial.suggest_float("imperfection", *IMPERFECTION, log=True))
+        return rounded(trial.suggest_float("imperfection", *IMPERFECTION, log=True))
     return STANDARD_IMPERFECTION
 
 
-def _rounded(value: float) -> float:
+def rounded(value: float) -> float:
+    """A number that can be spoken of."""
     return float(f"{value:.{_DIGITS}g}")

@@ -115,7 +115,8 @@ def summary(found: Search) -> str:
     """How much was searched, in words."""
     contenders = [*found.fitted.contenders, *found.free.contenders]
     told = (
-        f"{len(contenders)} readings in {found.rounds} rounds, {sum(c.n_runs for c in contenders)} runs; "
+        f"{len(contenders)} readings in {found.rounds} rounds, {sum(c.n_runs for c in contenders)} runs "
+        f"({found.core_minutes:.0f} minutes of one core); "
         f"chosen by seeds {', '.join(map(str, CHOOSING))}, and given up once they could no longer be among "
         "the best three."
     )
@@ -170,7 +171,7 @@ def _origins(found: Search) -> tuple[Sequence[str], list[list[object]]]:
     names = ("", "proposed", "readings", "came to their end", "best mean")
     lines: list[list[object]] = []
     for league in (found.fitted, found.free):
-        for origin in ("known", "random", "guided"):
+        for origin in ("known", "random", "surrogate", "neighbour"):
             own = [c for c in league.contenders if c.origin == origin]
             if own:
                 ends = [c.passed for c in own if c.is_complete]
