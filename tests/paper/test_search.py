@@ -75,6 +75,19 @@ def test_what_is_among_the_best_has_the_score_of_everything_run(found: Search) -
         assert contender.passed == pytest.approx(max(sum(n) for n in known.values()) / len(CHOOSING))
 
 
+@pytest.mark.parametrize("mechanics", [*KNOWN, *random_mechanics(8)], ids=str)
+def test_no_index_would_have_been_better(mechanics: Mechanics) -> None:
+    contender = Contender(BASE, mechanics, "random", True, level=0.0)
+    bench = raced(contender)
+    if not contender.impossible:
+        assert contender.is_complete
+        first = contender.candidates[0].boards
+        near = [gi for gi in FEW if first[gi].passed >= max(b.passed for b in first.values()) - 1]
+        known = exhausted(mechanics)
+        assert contender.passed == pytest.approx(max(sum(known[gi]) for gi in near) / len(CHOOSING))
+        assert len(bench.asked) > 30
+
+
 @pytest.mark.parametrize("mechanics", random_mechanics(8), ids=str)
 def test_given_up_means_not_above_the_level(mechanics: Mechanics) -> None:
     contender = Contender(BASE, mechanics, "random", True, level=11.0)

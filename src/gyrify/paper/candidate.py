@@ -86,9 +86,13 @@ class Candidate:
         known = {True: 1.0, None: _UNKNOWN}
         return sum(known.get(row.passed, _NEARLY * row.share) for row in self.boards[gi].rows)
 
-    def ask(self) -> list[Point]:
-        """The runs it needs next: of those that could decide an open observation, the earliest stage."""
-        boards = [board for board in self.boards.values() if board.passed + board.open == self.bound]
+    def ask(self, indices: Sequence[Index] = ()) -> list[Point]:
+        """The runs it needs next: of those that could decide an open observation, the earliest stage.
+
+        By default for the indices by which most can still hold.
+        """
+        found = indices or [gi for gi, b in self.boards.items() if b.passed + b.open == self.bound]
+        boards = [self.boards[gi] for gi in found]
         missing = {case for board in boards for row in board.rows for case in row.missing}
         first = min((_STAGE.get(case, len(STAGES)) for case in missing), default=0)
         cases = sorted(case for case in missing if _STAGE.get(case, len(STAGES)) == first)

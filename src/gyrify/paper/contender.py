@@ -50,10 +50,7 @@ class Contender:
     @property
     def gi(self) -> Index:
         """The index by which most observations hold in the mean; of equals, one without a fitted radius."""
-        return max(
-            self.candidates[-1].indices,
-            key=lambda gi: (self._mean(gi), not gi.is_fitted, self.value_of(gi)),
-        )
+        return max(self.indices, key=lambda gi: (self._passed(gi), not gi.is_fitted, self.value_of(gi)))
 
     @property
     def reading(self) -> Reading:
@@ -61,14 +58,22 @@ class Contender:
         return Reading(self.mechanics, self.gi)
 
     @property
+    def indices(self) -> tuple[Index, ...]:
+        """The indices by which it may still be judged."""
+        return self.candidates[-1].indices
+
+    @property
     def passed(self) -> float:
         """Mean number of observations that hold at once, at least; over the seeds that were begun."""
-        return self._mean(self.gi)
+        return self._passed(self.gi)
 
     @property
     def is_complete(self) -> bool:
-        """Whether all seeds came to their end."""
-        return len(self.candidates) == len(CHOOSING) and not any(c.is_open for c in self.candidates)
+        """Whether all seeds came to their end, so that no index could be better than its own."""
+        if len(self.candidates) < len(CHOOSING):
+            return False
+        best = self.passed
+        return self._bound(self.gi) == best and all(self._bound(gi) <= best for gi in self.indices)
 
     @property
     def impossible(self) -> str:
@@ -78,7 +83,7 @@ class Contender:
     @property
     def value(self) -> float:
         """What the search climbs."""
-        return max(self.value_of(gi) for gi in self.candidates[-1].indices)
+        return max(self.value_of(gi) for gi in self.indices)
 
     @property
     def misfit(self) -> float:
@@ -98,32 +103,29 @@ class Contender:
 
     def ask(self) -> list[Point]:
         """The runs it needs next; none once it is complete or has fallen behind."""
-        while True:
-            open_ones = [candidate for candidate in self.candidates if candidate.is_open]
-            if self._is_behind or (not open_ones and len(self.candidates) == len(CHOOSING)):
+        first = self.candidates[0]
+        if len(self.candidates) == 1:
+            if self.impossible or first.bound < self.level - _SLACK:
                 return []
-            if open_ones:
-                points = [point for candidate in open_ones for point in candidate.ask()]
-                if points or not self.impossible:
-                    return points
-                continue
-            first = self.candidates[0]
-            near = [gi for gi in first.indices if first.boards[gi].passed >= first.passed - _SLACK]
+            if first.is_open:
+                return first.ask()
+            near = [gi for gi in first.indices if self._bound(gi) >= first.passed - _SLACK]
             self.candidates += [Candidate(self._base, self.mechanics, seed, near) for seed in CHOOSING[1:]]
+        enough = max(self.level, self.passed)
+        hopeful = [gi for gi in self.indices if self._bound(gi) > enough]
+        if not hopeful:
+            return []
+        most = max(self._bound(gi) for gi in hopeful)
+        best = [gi for gi in hopeful if self._bound(gi) == most]
+        return [point for candidate in self.candidates for point in candidate.ask(best)]
 
     def learn(self, bench: Bench) -> None:
         """Take in what has become known."""
         for candidate in self.candidates:
             candidate.learn(bench)
 
-    @property
-    def _is_behind(self) -> bool:
-        first = self.candidates[0]
-        if self.impossible:
-            return True
-        if len(self.candidates) == 1:
-            return first.bound < self.level - _SLACK
-        return fmean(candidate.bound for candidate in self.candidates) <= self.level
-
-    def _mean(self, gi: Index) -> float:
+    def _passed(self, gi: Index) -> float:
         return fmean(candidate.boards[gi].passed for candidate in self.candidates)
+
+    def _bound(self, gi: Index) -> float:
+        return fmean(c.boards[gi].passed + c.boards[gi].open for c in self.candidates)
