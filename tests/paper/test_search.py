@@ -5,6 +5,8 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import fields
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import optuna
@@ -15,7 +17,7 @@ from gyrify.config import Config
 from gyrify.paper.candidate import Candidate
 from gyrify.paper.cases import EQUAL, SOFT, Case
 from gyrify.paper.contender import CHOOSING, Contender
-from gyrify.paper.index import INDICES, STANDARD_INDEX
+from gyrify.paper.index import INDICES, STANDARD_INDEX, Index
 from gyrify.paper.neighbour import neighbour
 from gyrify.paper.reading import Mechanics, Reading
 from gyrify.paper.reproduce import reproduce
@@ -86,6 +88,39 @@ def test_no_index_would_have_been_better(mechanics: Mechanics) -> None:
         known = exhausted(mechanics)
         assert contender.passed == pytest.approx(max(sum(known[gi]) for gi in near) / len(CHOOSING))
         assert len(bench.asked) > 30
+
+
+def test_an_index_that_is_behind_with_one_seed_may_lead_in_the_mean() -> None:
+    """The first index is decided and best with seed 0; the other could still be better over three seeds."""
+    one, other = FEW[:2]
+    asked: list[tuple[int, list[Index]]] = []
+
+    def board(passed: int, n_open: int) -> SimpleNamespace:
+        return SimpleNamespace(passed=passed, open=n_open)
+
+    def stub(seed: int, **boards: SimpleNamespace) -> Any:
+        def ask(indices: list[Index]) -> list[str]:
+            asked.append((seed, indices))
+            return [str(seed)] if boards["other"].open else []
+
+        known = {one: boards["one"], other: boards["other"]}
+        return SimpleNamespace(
+            boards=known, indices=(one, other), ask=ask, impossible="", value=lambda gi: 0.0
+        )
+
+    contender = Contender(BASE, KNOWN[0], "random", True, level=0.0)
+    contender.candidates = [
+        stub(0, one=board(14, 0), other=board(13, 1)),
+        stub(1, one=board(13, 0), other=board(14, 0)),
+        stub(2, one=board(13, 0), other=board(13, 1)),
+    ]
+    assert not contender.is_complete
+    assert contender.ask() == ["0", "2"]
+    assert asked == [(0, [other]), (1, [other]), (2, [other])]
+    contender.candidates[2].boards[other].open = contender.candidates[0].boards[other].open = 0
+    assert contender.ask() == []
+    assert contender.is_complete
+    assert (contender.gi, contender.passed) == (other, pytest.approx(40 / 3))
 
 
 @pytest.mark.parametrize("mechanics", random_mechanics(8), ids=str)
