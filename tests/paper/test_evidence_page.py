@@ -1,4 +1,4 @@
-"""The results of a screen find their places on the evidence page."""
+"""The results of a search find their places on the evidence page."""
 
 from __future__ import annotations
 
@@ -8,12 +8,10 @@ from types import ModuleType
 
 import pytest
 from fake_bench import FakeBench
-from gyrify.paper.screen import screen
 
 from gyrify.config import Config
-from gyrify.paper.candidate import Candidate
 from gyrify.paper.ensemble import repeat
-from gyrify.paper.reading import grid
+from gyrify.paper.search import search
 from gyrify.report.paper_readings import write_readings
 from gyrify.report.paper_tables import scoreboard_markdown, write_text
 
@@ -34,8 +32,8 @@ def script() -> ModuleType:
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("paper")
     bench = FakeBench(workers=2)
-    found = screen(bench, Config(), candidates=[Candidate(Config(), one) for one in grid()[::4]])
-    ensembles = [repeat(bench, Config(), c.reading, stability=False) for c in found.candidates[:2]]
+    found = search(bench, Config(), rounds=1)
+    ensembles = [repeat(bench, Config(), c.reading, stability=False) for c in found.fitted.ranked[:2]]
     write_readings(found, ensembles, out)
     write_text(out / "best-1" / "scoreboard.md", scoreboard_markdown(ensembles[0].members[0].scoreboard))
     return out
@@ -50,10 +48,12 @@ def test_the_page_has_both_places(script: ModuleType) -> None:
         script.replaced(page, "worst", "")
 
 
-def test_the_ranking_is_the_head_of_the_matrix(script: ModuleType, folder: Path) -> None:
+def test_the_ranking_is_all_but_the_seeds(script: ModuleType, folder: Path) -> None:
     text = script.ranking(folder)
-    assert "The best three are certain" in text
-    assert text.count("\n| ") == script.SHOWN + 1
+    assert text.startswith("11 readings in 1 rounds")
+    for heading in ("With fitted constants", "What guidance brings", "What constants bring"):
+        assert f"\n### {heading}\n" in text
+    assert "± " not in text
     assert "| P18 |" in text
 
 
@@ -64,5 +64,7 @@ def test_the_best_comes_with_its_spread(script: ModuleType, folder: Path) -> Non
     assert "- **P" in text
     (line,) = [line for line in text.splitlines() if line.startswith("| reading |")]
     after = text.splitlines()[text.splitlines().index(line) + 2 :]
-    assert len([line for line in after if line.startswith("| ")]) == 2
-    assert after[0].count("±") >= 5
+    assert after[0].count("±") == after[1].count("±") >= 6
+    assert "fresh seeds" in line
+    shares = [line for line in text.splitlines() if line.count("/5 |") == 18]
+    assert len(shares) == 2

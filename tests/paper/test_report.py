@@ -17,6 +17,7 @@ from gyrify.paper import Case, Row
 from gyrify.paper.cases import EQUAL, STIFFNESS, all_cases
 from gyrify.paper.ensemble import repeat
 from gyrify.paper.exclusion import exclusions
+from gyrify.paper.index import INDICES
 from gyrify.paper.scoreboard import score
 from gyrify.paper.search import search
 from gyrify.report.paper_figures import Outlines, paper_figure
@@ -109,9 +110,10 @@ def test_a_figure_has_a_panel_per_case_and_says_what_is_missing(layout: object) 
     assert sum("GI = 1.25" in title for title in titles) == len(cases) - 1
 
 
-def test_ranking(tmp_path: Path) -> None:
+def test_ranking(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("gyrify.paper.contender.INDICES", INDICES[::3])
     bench = FakeBench(workers=2)
-    found = search(bench, Config(), rounds=1)
+    found = search(bench, Config(), rounds=2)
     ensembles = [repeat(bench, Config(), found.fitted.ranked[0].reading, (0, 3), stability=False)]
     files = write_readings(found, ensembles, tmp_path)
     assert {file.name for file in files} == {"readings.csv", "readings.md", "readings.html", "seeds.csv"}
@@ -122,7 +124,7 @@ def test_ranking(tmp_path: Path) -> None:
     assert [int(row["constants"]) for row in rows] == [len(c.reading.constants) for c in everyone]
     text, page = readings_markdown(found, ensembles), readings_page(found, ensembles)
     assert str(found.fitted.ranked[0].reading) in text
-    assert f"{len(everyone)} readings in 1 rounds" in text
+    assert f"{len(everyone)} readings in 2 rounds" in text
     for heading in (
         "With fitted",
         "Without fitted",
