@@ -72,20 +72,42 @@ def test_the_root_lies_in_its_bracket_and_its_bracket_on_both_sides_of_the_exact
     assert root.pair.eigenvalue == sign * float(curve(root.state.value))
 
 
-def test_a_root_that_cannot_be_approached_is_the_middle_of_what_is_known() -> None:
-    """Newton's method has no answer within 0.2 of it."""
+@pytest.mark.parametrize("was_unstable", [False, True])
+@pytest.mark.parametrize("ahead", [0.0, 0.2, 0.3])
+def test_a_root_that_cannot_be_reached_is_approached_from_the_stable_end(
+    was_unstable: bool, ahead: float
+) -> None:
+    """Newton's method has no answer from 0.05 before the root to some way beyond it."""
+    sign = -1.0 if was_unstable else 1.0
+    exact = 0.6 if not was_unstable else 0.4
 
     def curve(t: float) -> float:
-        if abs(t - 0.6) < 0.2:
+        stable = sign * (exact - t)
+        if -ahead - 0.05 < stable < 0.05:
             raise SolveError("next to singular")
-        return 0.6 - t
+        return stable
 
-    root, asked = found(curve, 0.0, 1.0)
+    root, asked = found(curve, 0.0, 1.0, was_unstable=was_unstable)
     assert not root.is_refined
-    assert root.bracket[0] <= 0.4
-    assert root.bracket[1] >= 0.8
-    assert root.value == pytest.approx(0.5 * sum(root.bracket))
+    known = root.bracket[was_unstable]
+    assert sign * (exact - known) == pytest.approx(0.05, abs=0.01)
+    assert root.value == pytest.approx(exact, abs=1e-9)
+    assert root.pair.eigenvalue < 0.0
     assert set(root.bracket) <= set(asked)
+
+
+def test_the_line_through_stable_states_that_leads_out_of_the_bracket_gives_its_middle() -> None:
+    """The lowest mode of the states that are found hardly changes; another one turns."""
+
+    def curve(t: float) -> float:
+        if 0.5 < t < 0.9:
+            raise SolveError("next to singular")
+        return 1.0 - 0.01 * t if t <= 0.5 else -1.0
+
+    root, _ = found(curve, 0.0, 1.0)
+    assert root.value == pytest.approx(0.5 * sum(root.bracket))
+    assert 0.45 < root.bracket[0] <= 0.5
+    assert root.pair.eigenvalue < 0.0
 
 
 @pytest.mark.parametrize("was_unstable", [False, True])

@@ -15,6 +15,8 @@ from gyrify.solve.system import System
 # An eigenvalue counts as zero below this fraction of the smaller one at the ends of the bracket: that at the
 # stable end may be of a soft mode that is no part of the crossing.
 _ZERO: Final = 1e-3
+# Where a state is not found, the bracket is narrowed from its stable end, by a half, a quarter ....
+_SMALLEST_SHARE: Final = 1.0 / 64.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,8 +34,8 @@ class Root:
     pair : Eigenpair
         Its lowest eigenpair.
     is_refined : bool
-        Whether the root was found; else Newton's method had no answer next to it, and the value is the middle
-        of the bracket.
+        Whether the root was found; else Newton's method had no answer next to it, and the value is the zero
+        of the line through the last two stable states, or the middle of the bracket if that lies outside.
     """
 
     value: float
@@ -99,11 +101,48 @@ class LowestEigenvalue:
         try:
             brentq(clipped, low, high, xtol=tolerance)
         except SolveError:
+            self._narrow(low, high, tolerance, was_unstable)
             refined = False
-        inside = {value: self.pairs[value] for value in sorted(self.pairs) if low <= value <= high}
-        before = max(v for v, pair in inside.items() if (pair.eigenvalue < 0.0) == was_unstable)
-        after = min(v for v, pair in inside.items() if (pair.eigenvalue < 0.0) != was_unstable)
-        start, end = inside[before].eigenvalue, inside[after].eigenvalue
-        value = before + (after - before) * (start / (start - end) if refined else 0.5)
-        nearest = min(inside, key=lambda v: abs(inside[v].eigenvalue))
-        return Root(value, (before, after), self.branch.at(nearest), inside[nearest], refined)
+        before, after = self._bracket(low, high, was_unstable)
+        if refined:
+            start, end = self.at(before), self.at(after)
+            value = before + (after - before) * (start / (start - end))
+            nearest = min((v for v in self.pairs if low <= v <= high), key=lambda v: abs(self.at(v)))
+        else:
+            # A state that is stable yet may have another mode as its lowest.
+            value, nearest = self._beyond(before, after, was_unstable), before if was_unstable else after
+        return Root(value, (before, after), self.branch.at(nearest), self.pairs[nearest], refined)
+
+    def _bracket(self, low: float, high: float, was_unstable: bool) -> tuple[float, float]:
+        """Known values closest to the crossing, on either side."""
+        inside = [value for value in self.pairs if low <= value <= high]
+        before = max(v for v in inside if (self.at(v) < 0.0) == was_unstable)
+        return before, min(v for v in inside if (self.at(v) < 0.0) != was_unstable)
+
+    def _narrow(self, low: float, high: float, tolerance: float, was_unstable: bool) -> None:
+        """Approach the singular state from the stable end, from which one state leads to the next.
+
+        Past it many modes may turn within a short stretch, and Newton's method fails between them.
+        """
+        share = 0.5
+        while share >= _SMALLEST_SHARE:
+            before, after = self._bracket(low, high, was_unstable)
+            stable, unstable = (after, before) if was_unstable else (before, after)
+            if after - before <= tolerance:
+                return
+            try:
+                self.at(stable + share * (unstable - stable))
+            except SolveError:
+                share *= 0.5
+
+    def _beyond(self, before: float, after: float, was_unstable: bool) -> float:
+        """Where the last two stable states say that the eigenvalue vanishes, if that lies in the bracket."""
+        stable = sorted(v for v, pair in self.pairs.items() if pair.eigenvalue > 0.0)
+        after_it, before_it = [v for v in stable if v >= after], [v for v in stable if v <= before]
+        last = after_it[:2] if was_unstable else before_it[-2:]
+        if len(last) == 2:
+            (a, b), (f, g) = last, (self.at(v) for v in last)
+            value = a - f * (b - a) / (g - f) if f != g else before
+            if before < value < after:
+                return value
+        return 0.5 * (before + after)
