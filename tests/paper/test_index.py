@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 
 import numpy as np
@@ -37,6 +38,7 @@ def test_what_is_narrower_than_the_line_is_not_seen() -> None:
     assert picture_index(wide, 10.0) == pytest.approx(gyrification_index(wide), rel=2e-3)
     assert gyrification_index(narrow) > 1.1
     assert picture_index(narrow, 10.0) == pytest.approx(1.0, abs=2e-3)
+    assert picture_index(narrow, 10.0, 0.1 * PEN) == pytest.approx(gyrification_index(narrow), rel=2e-3)
 
 
 def test_a_smooth_slice_has_an_index_of_one_by_each() -> None:
@@ -60,14 +62,23 @@ def test_other_radii_agree_with_a_run_that_has_them(tmp_path: Path) -> None:
     assert (told[0].gi, told[0].depth, told[0].label) == (told[1].gi, told[1].depth, told[1].label)
     gi = {str(index): row.gi for index, row in rows.items() if row is not None}
     assert gi["closing of 6 mm"] < gi["closing of 8 mm"] < gi["closing"] < gi["hull"]
-    assert 1.0 < gi["picture"] < gi["closing"]
+    pens = [index for index in INDICES if index.definition == "picture"]
+    drawn = [gi[str(index)] for index in sorted(pens, key=lambda index: -index.pen)]
+    assert len(drawn) > 3
+    assert all(thick <= thin for thick, thin in itertools.pairwise(drawn))
+    assert 1.0 < gi["picture"] == drawn[0] < drawn[-1] <= gi["closing"] * (1.0 + 1e-3)
     assert gi["closing"] > 1.05
 
 
 def test_names_and_fitted_radii() -> None:
     assert str(STANDARD_INDEX) == "closing"
     assert str(Index("closing", 7.0)) == "closing of 7 mm"
-    assert len(set(INDICES)) == len(INDICES)
+    assert str(Index("picture", pen=0.2)) == "picture with a line of 0.2 mm"
+    assert len(set(map(str, INDICES))) == len(INDICES)
+    assert Reading(Mechanics(dissipation="none"), Index("picture")).constants == ()
+    thin = Index("picture", pen=0.2)
+    assert thin.is_fitted
+    assert Reading(Mechanics(dissipation="none"), thin).constants == ("width of the line",)
     assert Reading(Mechanics(), Index("closing", 8.0)).constants == ("dissipation number", "closing radius")
     assert Reading(Mechanics(dissipation="none", number=0.0)).constants == ()
     assert Mechanics(exponent=0.3, imperfection=0.05, dissipation="none").constants == (

@@ -35,18 +35,28 @@ class Index:
         slice, who cannot follow a sulcus that is narrower than the line it is drawn with.
     radius : float
         Of the closing [mm]; sulcal depth is measured below its outline too.
+    pen : float
+        Width of the line that a picture is drawn with [mm].
     """
 
     definition: GiDefinition = "closing"
     radius: float = STANDARD_RADIUS
+    pen: float = PEN
 
     def __str__(self) -> str:
-        return self.definition + ("" if self.radius == STANDARD_RADIUS else f" of {self.radius:g} mm")
+        word = self.definition + ("" if self.radius == STANDARD_RADIUS else f" of {self.radius:g} mm")
+        return word + ("" if self.pen == PEN else f" with a line of {self.pen:g} mm")
+
+    @property
+    def constants(self) -> tuple[str, ...]:
+        """Numbers of it that differ from those that were fixed before any comparison."""
+        fitted = {"closing radius": self.radius != STANDARD_RADIUS, "width of the line": self.pen != PEN}
+        return tuple(name for name, is_fitted in fitted.items() if is_fitted)
 
     @property
     def is_fitted(self) -> bool:
-        """Whether its radius differs from the one that was fixed before any comparison."""
-        return self.radius != STANDARD_RADIUS
+        """Whether it has a fitted constant."""
+        return bool(self.constants)
 
 
 STANDARD_INDEX: Final = Index()
@@ -56,7 +66,7 @@ INDICES: Final = (
     *(Index("closing", radius) for radius in (9.0, 8.0, 7.0, 6.0)),
     Index("hull"),
     Index("exposed"),
-    Index("picture"),
+    *(Index("picture", pen=pen) for pen in (PEN, 0.3, 0.2, 0.1, 0.05)),
 )
 
 
@@ -90,7 +100,10 @@ def index_metrics(
         contour, interface, index.radius, metrics.gyrus_prominence, metrics.samples, None
     ).flat()
     named = f"gi_{index.definition}"
-    return {**found, "gi": found[named] if named in found else picture_index(contour, index.radius)}
+    return {
+        **found,
+        "gi": found[named] if named in found else picture_index(contour, index.radius, index.pen),
+    }
 
 
 def picture_index(contour: NDArray[np.float64], radius: float, pen: float = PEN) -> float:

@@ -130,7 +130,7 @@ class Reading:
     @property
     def constants(self) -> tuple[str, ...]:
         """Its fitted constants, by name."""
-        return (*self.mechanics.constants, *(["closing radius"] if self.gi.is_fitted else []))
+        return (*self.mechanics.constants, *self.gi.constants)
 
     def __str__(self) -> str:
         return f"{self.mechanics}; GI by {self.gi}"

@@ -33,13 +33,15 @@ FLOOR: Final = 8.0
 # Proposals of a round with fitted constants: as many by chance as by the others together.
 _FITTED: Final[tuple[Origin, ...]] = (*("random",) * 4, *("surrogate",) * 2, *("neighbour",) * 2)
 # Those without, in every second round: they are few.
-_FREE: Final[tuple[Origin, ...]] = ("random", "surrogate")
+_FREE: Final[tuple[Origin, ...]] = ("random", "random", "surrogate")
 _STARTUP: Final = 12
-# Known before the search: the preset of before, the frozen reading, and growth between none and full along z.
+# Known before the search: the preset of before, the frozen reading, growth between none and full along z, and
+# the same in equilibrium.
 KNOWN: Final = (
     Mechanics("generalised", number=2.6, imperfection=1e-2),
     Mechanics(),
     Mechanics("generalised", "exponential", number=2.6, imperfection=0.1, exponent=0.13, course="reduced"),
+    Mechanics("generalised", "exponential", "grown", "none", 0.0, imperfection=0.076, exponent=0.17),
 )
 
 
