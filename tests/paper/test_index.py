@@ -93,3 +93,24 @@ def test_definitions_of_the_index(word: str) -> None:
     assert require_gi(word, 8.0).radius == 8.0
     with pytest.raises(ConfigError, match="gi = 'convex'"):
         require_gi("convex")
+
+
+@pytest.mark.parametrize("word", ["picture:0.2", "picture:1/5"])
+def test_the_width_of_the_line_is_part_of_the_name(word: str) -> None:
+    assert require_gi(word) == Index("picture", pen=0.2)
+    assert require_gi("picture") == Index("picture", pen=PEN)
+
+
+@pytest.mark.parametrize(
+    "word", ["picture:", "picture:0", "picture:-1", "picture:wide", "picture:10", "picture:1e999"]
+)
+def test_a_line_needs_a_width_that_can_be_drawn(word: str) -> None:
+    with pytest.raises(ConfigError, match=r"must be above 0 and below 10 mm") as fault:
+        require_gi(word)
+    assert require_gi(fault.value.advice.removeprefix("Try ").rstrip(".")) == Index("picture")
+
+
+@pytest.mark.parametrize("word", ["closing:0.2", "hull:", "exposed:1"])
+def test_only_a_picture_has_a_line(word: str) -> None:
+    with pytest.raises(ConfigError, match="is not known"):
+        require_gi(word)

@@ -60,7 +60,8 @@ def paper(
     set_ : sequence of str, optional
         Any other value, as section.field=value; may be repeated.
     gi : str, optional
-        Definition of the gyrification index: closing, hull, exposed or picture; by default the preset's.
+        Gyrification index: closing, hull, exposed, picture, or picture:0.2 for a line of 0.2 mm; by default
+        the preset's.
     seed : int
         Seed of the node jitter.
     json : bool
@@ -68,17 +69,11 @@ def paper(
     quiet : bool
         Show no progress.
     """
-    from gyrify.cli.overrides import resolve_config
     from gyrify.cli.study_progress import progress_of_points
-    from gyrify.config import preset_about
     from gyrify.paper.bench import Bench
-    from gyrify.paper.index import require_gi
-    from gyrify.paper.reading import Mechanics, Reading
 
     begun = time.perf_counter()
-    base = resolve_config(preset=preset, set_=set_)
-    index = require_gi(gi or preset_about(preset).gi_definition, base.metrics.closing_radius)
-    reading = Reading(Mechanics.of(base), index)
+    base, reading = _reading_of(preset, set_, gi)
     processes = cores(workers)
     _require(processes, minutes)
     seen = progress_of_points(quiet or readings)
@@ -89,6 +84,18 @@ def paper(
             return _one(bench, base, reading, begun, seed, json)
     except KeyboardInterrupt:
         return _interrupted(json)
+
+
+def _reading_of(preset: str, set_: tuple[str, ...], gi: str | None) -> tuple[Config, Reading]:
+    """What the preset and the other values come to, and the reading that it is."""
+    from gyrify.cli.overrides import resolve_config
+    from gyrify.config import preset_about
+    from gyrify.paper.index import require_gi
+    from gyrify.paper.reading import Mechanics, Reading
+
+    base = resolve_config(preset=preset, set_=set_)
+    index = require_gi(gi or preset_about(preset).gi_definition, base.metrics.closing_radius)
+    return base, Reading(Mechanics.of(base), index)
 
 
 def _interrupted(json: bool) -> int:

@@ -32,7 +32,7 @@ class PresetAbout:
     sources : dict
         Where each value comes from, by dotted key.
     gi_definition : str
-        Which gyrification index the publication's values are compared with: closing, hull or exposed.
+        Which gyrification index the publication's values are compared with, as `gyrify paper --gi` takes it.
     """
 
     name: str

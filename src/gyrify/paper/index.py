@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Final, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gyrify.config import Config
+from gyrify.config import Config, parse_number
 from gyrify.errors import ConfigError
 from gyrify.metrics.contour import filled, fitting_radius, offset_outline
 from gyrify.metrics.gyrification import closing_length
@@ -131,16 +132,29 @@ def picture_index(contour: NDArray[np.float64], radius: float, pen: float = PEN)
 
 
 def require_gi(word: str, radius: float = STANDARD_RADIUS) -> Index:
-    """An index by the name of its definition.
+    """An index by its name: ``"closing"``, or ``"picture:0.2"`` for one with a line of 0.2 mm.
 
     Raises
     ------
     ConfigError
         If there is none of that name.
     """
+    name, colon, width = word.partition(":")
+    if name == "picture" and colon:
+        return Index("picture", radius, _pen(word, width, radius))
     for known in get_args(GiDefinition):
         if word == known:
             return Index(known, radius)
+    known_words = ", ".join(get_args(GiDefinition))
+    raise ConfigError(f"gi = {word[:60]!r} is not known.", f"Choose one of {known_words}, picture:0.2.")
+
+
+def _pen(word: str, width: str, radius: float) -> float:
+    with suppress(ValueError):
+        pen = parse_number(width)
+        if 0.0 < pen < radius:
+            return pen
     raise ConfigError(
-        f"gi = {word[:60]!r} is not known.", f"Choose one of {', '.join(get_args(GiDefinition))}."
+        f"gi = {word[:60]!r}: the width of the line must be above 0 and below {radius:g} mm.",
+        f"Try picture:{PEN:g}.",
     )
