@@ -9,12 +9,9 @@ import numpy as np
 from gyrify.config import Config
 from gyrify.energy.collision import LibraryName
 from gyrify.energy.contact import ContactEnergy, ContactSurface
-from gyrify.energy.inversion import InversionBarrier
-from gyrify.energy.kinematics import ElasticKinematics
-from gyrify.energy.term import EnergyTerm, FloatArray, IntArray
+from gyrify.energy.term import FloatArray, IntArray
 from gyrify.energy.total import TotalEnergy
 from gyrify.energy.unknowns import Unknowns
-from gyrify.energy.viscous import DragEnergy, KelvinVoigtEnergy, green_lagrange, reduction
 from gyrify.mesh.symmetry import representatives
 from gyrify.meshing import build_mesh
 from gyrify.solve.linear import linear_solver
@@ -23,6 +20,7 @@ from gyrify.solve.problem import State, Stepping
 from gyrify.solve.quasi_newton import STEPS
 from gyrify.solve.stability import Tangent
 from gyrify.solve.system import System
+from gyrify.terms import CONSERVATIVE, GrowthStep, terms_of
 from gyrify.tissue import Tissue
 
 __all__ = ["Slice", "build_mesh"]
@@ -163,19 +161,17 @@ class Slice(Tissue):
         self.simplices.volume_ratio(start.u)
 
     def tissue_energy(self, fraction: float, start_u: FloatArray) -> TotalEnergy:
-        """Energy of elasticity and contact alone, for an increment that starts at a displacement."""
-        terms: list[EnergyTerm] = [
-            self.elastic_energy(self.kinematics(fraction * self.config.growth.duration))
-        ]
-        return TotalEnergy([*terms, *self._barriers(start_u)])
+        """Energy of the body without dissipation, for an increment that starts at a displacement."""
+        step = GrowthStep(self, start_u, fraction, fraction)
+        return TotalEnergy([term for _, term in terms_of(step, CONSERVATIVE)])
 
     def tangent(self, fraction: float, u: FloatArray, start_u: FloatArray, system: System) -> Tangent:
-        """Exact stiffness of elasticity and contact alone at a state."""
+        """Exact stiffness of a state, dissipation left out."""
         evaluations = self.tissue_energy(fraction, start_u).evaluate(u, project_psd=False)
         return Tangent(evaluations, system, self.free_mass, lambda: self.candidates(u))
 
     def is_stable(self, fraction: float, u: FloatArray) -> bool:
-        """Whether elastic and contact energy alone have a positive definite Hessian at a state."""
+        """Whether the energy without dissipation has a positive definite Hessian at a state."""
         return self.tangent(fraction, u, u, self.system(np.empty((0, 2), dtype=np.int64))).is_stable
 
     def contact_energy(self, u: FloatArray) -> ContactEnergy:
@@ -187,11 +183,8 @@ class Slice(Tissue):
 
     def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:
         """See `gyrify.solve.problem.Problem`."""
-        duration = self.config.growth.duration
-        kinematics = self.kinematics(fraction * duration)
-        terms: list[EnergyTerm] = [self.elastic_energy(kinematics)]
-        terms += self._dissipation(kinematics, start, start_fraction, fraction)
-        return TotalEnergy([*terms, *self._barriers(start.u)])
+        step = GrowthStep(self, start.u, start_fraction, fraction)
+        return TotalEnergy([term for _, term in terms_of(step)])
 
     def system(self, couplings: IntArray, unknowns: Unknowns | None = None) -> System:
         """See `gyrify.solve.problem.Problem`; of all free degrees of freedom unless unknowns are given."""
@@ -214,30 +207,3 @@ class Slice(Tissue):
     def is_path_admissible(self, u: FloatArray, u_end: FloatArray) -> bool:
         """See `gyrify.solve.problem.Problem`."""
         return not self.config.contact.enabled or self.surface.is_path_collision_free(u, u_end)
-
-    def _barriers(self, start_u: FloatArray) -> list[EnergyTerm]:
-        """What keeps cells from inverting, and the contour from itself."""
-        terms: list[EnergyTerm] = []
-        share, curved = self.config.mesh.inversion_resistance, self.simplices.curved
-        if share > 0.0 and curved is not None:
-            first = np.searchsorted(self.simplices.cell, np.arange(self.mesh.n_cells))
-            stiffness = share * self.config.material.young_modulus
-            terms.append(InversionBarrier(curved, stiffness, self.pattern, first))
-        if self.config.contact.enabled:
-            terms.append(self.contact_energy(start_u))
-        return terms
-
-    def _dissipation(
-        self, kinematics: ElasticKinematics, start: State, start_fraction: float, fraction: float
-    ) -> list[EnergyTerm]:
-        """Energy of the dissipation of an increment between two fractions of growth."""
-        if self.is_conservative:
-            return []
-        dissipation = self.config.dissipation
-        number = dissipation.number * reduction(dissipation.course, fraction)
-        rate = number * self.config.material.young_modulus / (fraction - start_fraction)
-        if dissipation.kind == "drag":
-            return [DragEnergy(rate / self.config.geometry.drag_length**2, self.lumped_area, start.u)]
-        start_time = start_fraction * self.config.growth.duration
-        strain = green_lagrange(self.kinematics(start_time).deformation(start.u))
-        return [KelvinVoigtEnergy(kinematics, rate, self.weight(kinematics), strain, self.pattern)]

@@ -1,11 +1,15 @@
 r"""Increments of a stored run, evaluated again from the states alone.
 
-At fixed displacement, growth changes the elastic energy: that is the work of growth W. The rest of the change
-is done against the forces f of dissipation, because the states are in equilibrium, so that over an increment
+At fixed displacement, growth changes the energy that is stored in the tissue and in its surroundings: that is
+the work of growth W. The rest of the change is done against the forces f of dissipation, because the states
+are in equilibrium, so that over an increment
 
 .. math::
-   \Delta E_{elastic} + \Delta E_{contact} + D = W, \quad
-   W = \int \left.\frac{\partial E_{elastic}}{\partial t}\right|_u dt, \quad D = \int f \cdot du .
+   \Delta E_{stored} + \Delta E_{contact} + \Delta E_{external} + D = W, \quad
+   W = \int \left.\frac{\partial (E_{stored} + E_{external})}{\partial t}\right|_u dt, \quad
+   D = \int f \cdot du .
+
+Terms are summed by their role (`gyrify.terms`), so that none can be taken for another.
 
 W is integrated by Simpson's rule along the straight path from state to state, D by the trapezoidal rule; the
 defect falls with the square of the increments while the path is smooth. Where the tissue jumps, energy is
@@ -22,13 +26,11 @@ from typing import Final
 
 import numpy as np
 
-from gyrify.energy.contact import ContactEnergy
-from gyrify.energy.elastic import ElasticEnergy
-from gyrify.energy.inversion import InversionBarrier
 from gyrify.model import Slice
 from gyrify.solve.problem import State
 from gyrify.solve.types import FloatArray
 from gyrify.store.history import History
+from gyrify.terms import ROLES, GrowthStep, Role, terms_of
 
 # Half the fraction of growth over which the power of growth is differenced.
 _DIFFERENCE: Final = 1e-4
@@ -50,8 +52,8 @@ class Increment:
         The cells that have them.
     is_path_free : bool
         Whether the contour crosses itself nowhere on the straight path to here; true without contact.
-    elastic, contact : float
-        Changes of energy [Pa mm^2].
+    stored, contact, external : float
+        Changes of energy: stored in the tissue, in contact, in the surroundings [Pa mm^2].
     dissipated : float
         Work done against dissipation [Pa mm^2].
     work, work_error : float
@@ -66,8 +68,9 @@ class Increment:
     smallest_cell: int
     smallest_elastic_cell: int
     is_path_free: bool
-    elastic: float
+    stored: float
     contact: float
+    external: float
     dissipated: float
     work: float
     work_error: float
@@ -75,7 +78,7 @@ class Increment:
     @property
     def defect(self) -> float:
         """Energy that appeared from nowhere; negative if it was lost."""
-        return self.elastic + self.contact + self.dissipated - self.work
+        return self.stored + self.contact + self.external + self.dissipated - self.work
 
 
 def reevaluated(history: History) -> Iterator[Increment]:
@@ -94,23 +97,19 @@ def _evaluate(
     problem: Slice, before: State, after: State, span: tuple[float, float], power: float, force: FloatArray
 ) -> tuple[Increment, float, FloatArray]:
     """One increment; ``power`` of growth and ``force`` of dissipation are those at its start, then end."""
-    total = problem.energy(span[1], before, span[0])
-    duration = problem.config.growth.duration
-    gradient, change = np.zeros_like(after.u), {"elastic": 0.0, "contact": 0.0, "rise": 0.0}
-    force_after, scale = np.zeros_like(after.u), 0.0
-    for term in total.terms:
+    step, duration = GrowthStep(problem, before.u, *span), problem.config.growth.duration
+    at_start = _growing(problem, span[0], before.u)
+    gradient, force_after = np.zeros_like(after.u), np.zeros_like(after.u)
+    change: dict[Role, float] = dict.fromkeys(ROLES, 0.0)
+    rise = scale = 0.0
+    for kind, term in terms_of(step):
         end, start = term.evaluate(after.u, 1), term.evaluate(before.u, 0).value
         if end.gradient is not None:
             gradient += end.gradient
-        change["rise"] += end.value - start
+            force_after += end.gradient if kind.role == "dissipative" else 0.0
+        rise += end.value - start
         scale += abs(start)
-        if isinstance(term, ElasticEnergy):
-            grown = problem.elastic_energy(problem.kinematics(span[0] * duration)).evaluate(before.u, 0).value
-            change["elastic"] = end.value - grown
-        elif isinstance(term, ContactEnergy | InversionBarrier):
-            change["contact"] += end.value - start
-        elif end.gradient is not None:
-            force_after = end.gradient
+        change[kind.role] += end.value - at_start.get(kind.name, start)
     gradient[problem.mesh.clamped] = 0.0
     J, J_e = problem.least_volume_ratios(after.u, span[1] * duration)
     power_after = _growth_power(problem, span[1], after.u)
@@ -119,14 +118,15 @@ def _evaluate(
         Increment(
             residual=float(np.linalg.norm(gradient, axis=1).max()),
             stored_residual=after.residual,
-            rise=change["rise"] / scale if scale > 0.0 else 0.0,
+            rise=rise / scale if scale > 0.0 else 0.0,
             min_J=float(J.min()),
             min_J_elastic=float(J_e.min()),
             smallest_cell=int(J.argmin()),
             smallest_elastic_cell=int(J_e.argmin()),
             is_path_free=problem.is_path_admissible(before.u, after.u),
-            elastic=change["elastic"],
+            stored=change["stored"],
             contact=change["contact"],
+            external=change["external"],
             dissipated=float(0.5 * np.sum((force + force_after) * (after.u - before.u))),
             work=work,
             work_error=work_error,
@@ -136,12 +136,16 @@ def _evaluate(
     )
 
 
+def _growing(problem: Slice, fraction: float, u: FloatArray) -> dict[str, float]:
+    """Energy of each term that growth changes at fixed displacement, by name [Pa mm^2]."""
+    terms = terms_of(GrowthStep(problem, u, fraction, fraction), ("stored", "external"))
+    return {kind.name: term.evaluate(u, 0).value for kind, term in terms}
+
+
 def _growth_power(problem: Slice, fraction: float, u: FloatArray) -> float:
-    """Change of the elastic energy with growth at fixed displacement, per fraction of growth [Pa mm^2]."""
-    duration = problem.config.growth.duration
+    """Change of energy with growth at fixed displacement, per fraction of growth [Pa mm^2]."""
     early, late = (
-        problem.elastic_energy(problem.kinematics((fraction + step) * duration)).evaluate(u, 0).value
-        for step in (-_DIFFERENCE, _DIFFERENCE)
+        sum(_growing(problem, fraction + step, u).values()) for step in (-_DIFFERENCE, _DIFFERENCE)
     )
     return (late - early) / (2.0 * _DIFFERENCE)
 

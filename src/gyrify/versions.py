@@ -19,6 +19,7 @@ NUMERICS: Final = (
     "meshing",
     "energy",
     "tissue",
+    "terms",
     "model",
     "solve",
     "onset",

@@ -22,6 +22,7 @@ LAYERS = [
     {"energy", "metrics"},
     {"solve", "meshing", "phenotype"},
     {"tissue"},
+    {"terms"},
     {"model"},
 ]
 # What kernels and readers may know, more strictly than by their layer.

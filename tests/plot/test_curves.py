@@ -65,7 +65,7 @@ def test_energy_is_the_sum_of_the_increments(history) -> None:
     steps = list(reevaluated(run))
     for axes, label, key, unit in (
         (large, "work of growth", "work", 1e-6),
-        (large, "stored in the tissue", "elastic", 1e-6),
+        (large, "stored in the tissue", "stored", 1e-6),
         (large, "dissipated", "dissipated", 1e-6),
         (small, "stored in contact", "contact", 1e-3),
     ):

@@ -21,7 +21,7 @@ TOLERANCE = 1e-3
 FINE = Increment(
     residual=0.9e-3, stored_residual=0.9e-3, rise=-0.1, min_J=0.5, min_J_elastic=0.5,
     smallest_cell=7, smallest_elastic_cell=8, is_path_free=True,
-    elastic=60.0, contact=1.0, dissipated=39.0, work=100.0, work_error=0.0,
+    stored=60.0, contact=1.0, external=0.0, dissipated=39.0, work=100.0, work_error=0.0,
 )  # fmt: skip
 
 
@@ -57,9 +57,9 @@ def test_each_bound_of_an_increment_holds_from_both_sides(
     assert not passed(name, **{field: np.nan})
 
 
-def balance(elastic: float, work_error: float = 0.0) -> Check:
-    """Of one increment whose defect is that of its elastic energy, among nine that are in balance."""
-    return _check_balance([replace(FINE, elastic=elastic, work_error=work_error), *[FINE] * 9])
+def balance(stored: float, work_error: float = 0.0) -> Check:
+    """Of one increment whose defect is that of its stored energy, among nine that are in balance."""
+    return _check_balance([replace(FINE, stored=stored, work_error=work_error), *[FINE] * 9])
 
 
 def test_energy_may_be_lost_but_not_created() -> None:
@@ -79,7 +79,7 @@ def test_what_is_created_may_be_as_much_as_the_work_of_growth_is_uncertain_by() 
 
 
 def test_what_one_increment_loses_makes_up_for_nothing_that_another_creates() -> None:
-    less, more = replace(FINE, elastic=30.0), replace(FINE, elastic=90.0)
+    less, more = replace(FINE, stored=30.0), replace(FINE, stored=90.0)
     assert not _check_balance([less, more]).passed
 
 

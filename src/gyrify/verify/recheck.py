@@ -215,15 +215,16 @@ def _check_balance(increments: list[Increment]) -> Check:
         return Check("energy balance", True, "Nothing has grown.", 0.0, ENERGY_BOUND)
     shares = {
         name: math.fsum(getattr(i, name) for i in increments) / work
-        for name in ("elastic", "contact", "dissipated", "work_error")
+        for name in ("stored", "contact", "external", "dissipated", "work_error")
     }
     created = math.fsum(max(i.defect, 0.0) for i in increments) / work
     lost = math.fsum(max(-i.defect, 0.0) for i in increments) / work
     bound = max(ENERGY_BOUND, shares["work_error"])
+    outside = f"{shares['external']:.2%} in the surroundings, " if any(i.external for i in increments) else ""
     sentence = (
-        f"Of the work of growth ({work:.4g} Pa mm²) {shares['elastic']:.2%} is stored elastically, "
-        f"{shares['contact']:.2%} in contact, {shares['dissipated']:.2%} dissipated; the increments create "
-        f"{created:.2%} and lose {lost:.2%} (error of the work {shares['work_error']:.2g}, allowed to create "
-        f"{bound:.2g})."
+        f"Of the work of growth ({work:.4g} Pa mm²) {shares['stored']:.2%} is stored elastically, "
+        f"{shares['contact']:.2%} in contact, {outside}{shares['dissipated']:.2%} dissipated; the increments "
+        f"create {created:.2%} and lose {lost:.2%} (error of the work {shares['work_error']:.2g}, allowed to "
+        f"create {bound:.2g})."
     )
     return Check("energy balance", created <= bound, sentence, created, bound)

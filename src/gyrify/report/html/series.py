@@ -50,13 +50,16 @@ def folding_plots(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
 def energy_lines(history: History) -> list[dict[str, Any]]:
     """Energies of every state, summed up over the increments as they are evaluated again [mJ/mm].
 
-    Work of growth is what goes in; the rest is stored elastically, in contact, or dissipated.
+    Work of growth is what goes in; the rest is stored elastically, in contact or in the surroundings, if
+    there are any, or dissipated.
     """
     increments = list(reevaluated(history))
+    outside = [i.external for i in increments]
     parts = (
-        ("elastic", [i.elastic for i in increments]),
+        ("elastic", [i.stored for i in increments]),
         ("dissipated", [i.dissipated for i in increments]),
         ("contact", [i.contact for i in increments]),
+        *([("surroundings", outside)] if any(outside) else ()),
         ("work of growth", [i.work for i in increments]),
     )
     return [

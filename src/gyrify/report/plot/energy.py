@@ -21,6 +21,7 @@ from gyrify.report.sheet import FloatArray
 _MILLIJOULES: Final = 1e-6
 _HEIGHTS: Final = (40.0, 32.0)
 _SHARES: Final = ("stored [mJ/mm]", "dissipated [mJ/mm]", "contact [µJ/mm]", "lost [µJ/mm]")
+_SURROUNDINGS: Final = "surroundings [mJ/mm]"
 _LABELS: Final = ("energy [mJ/mm]", "energy [µJ/mm]")
 # Contact and jumps take so little that they are given in microjoules.
 _MICRO: Final = 1e3
@@ -30,8 +31,8 @@ _MICRO: Final = 1e3
 class Budget:
     """Energy per depth [mJ/mm] from the start of growth to each state, (n_states,) each.
 
-    ``work`` of growth = ``stored`` in elasticity + ``contact`` + ``dissipated`` + ``lost`` in jumps; see
-    `gyrify.reevaluation`.
+    ``work`` of growth = ``stored`` in elasticity + ``contact`` + ``external`` in the surroundings +
+    ``dissipated`` + ``lost`` in jumps; see `gyrify.reevaluation`.
     """
 
     time: FloatArray
@@ -39,6 +40,7 @@ class Budget:
     stored: FloatArray
     dissipated: FloatArray
     contact: FloatArray
+    external: FloatArray
     lost: FloatArray
 
     @staticmethod
@@ -46,9 +48,10 @@ class Budget:
         """Evaluate the increments of a run up to the shown state again."""
         history, end = state.history, state.index
         rows = [
-            (i.work, i.elastic, i.dissipated, i.contact, -i.defect) for i in islice(reevaluated(history), end)
+            (i.work, i.stored, i.dissipated, i.contact, i.external, -i.defect)
+            for i in islice(reevaluated(history), end)
         ]
-        sums = np.zeros((5, end + 1))
+        sums = np.zeros((6, end + 1))
         if rows:
             sums[:, 1:] = _MILLIJOULES * np.cumsum(np.array(rows).T, axis=1)
         return Budget(history.growth_times[: end + 1], *sums)
@@ -59,10 +62,11 @@ def energy_plot(states: Sequence[Shown], width_mm: float | None) -> Figure:
     width = width_mm or SINGLE
     end = max(state.history.config.growth.duration for state in states)
     if len(states) > 1:
-        figure, panels = curves(
-            title_of(states, "Energy against growth"), TIME_LABEL, _SHARES, width, 4 * (28.0,)
-        )
-        _several(panels, states)
+        budgets = [Budget.of(state) for state in states]
+        labels = _SHARES + ((_SURROUNDINGS,) if any(b.external.any() for b in budgets) else ())
+        title = title_of(states, "Energy against growth")
+        figure, panels = curves(title, TIME_LABEL, labels, width, len(labels) * (28.0,))
+        _several(panels, states, budgets)
     else:
         figure, panels = curves(title_of(states, ""), TIME_LABEL, _LABELS, width, _HEIGHTS)
         _one(panels, states[0])
@@ -72,13 +76,15 @@ def energy_plot(states: Sequence[Shown], width_mm: float | None) -> Figure:
 
 def _one(panels: Sequence[Axes], state: Shown) -> None:
     budget = Budget.of(state)
-    shares = (
+    shares: tuple[tuple[Axes, FloatArray, str, int, int], ...] = (
         (panels[0], budget.work, "work of growth", 4, 0),
         (panels[0], budget.stored, "stored in the tissue", 0, 0),
         (panels[0], budget.dissipated, "dissipated", 1, 1),
         (panels[1], _MICRO * budget.lost, "lost in jumps", 2, 0),
         (panels[1], _MICRO * budget.contact, "stored in contact", 3, 1),
     )
+    if budget.external.any():
+        shares += ((panels[0], budget.external, "in the surroundings", 5, 1),)
     for axes, values, label, hue, dash in shares:
         axes.plot(budget.time, values, color=HUES[hue], linestyle=DASHES[dash], linewidth=1.2, label=label)
     onset = state.history.onset
@@ -88,11 +94,16 @@ def _one(panels: Sequence[Axes], state: Shown) -> None:
             mark_onset(axes, onset.growth_time, "" if number else "onset")
 
 
-def _several(panels: Sequence[Axes], states: Sequence[Shown]) -> None:
-    for state, hue, dash in zip(states, HUES, DASHES, strict=False):
-        budget = Budget.of(state)
+def _several(panels: Sequence[Axes], states: Sequence[Shown], budgets: Sequence[Budget]) -> None:
+    for state, budget, hue, dash in zip(states, budgets, HUES, DASHES, strict=False):
         style: dict[str, Any] = {"color": hue, "linestyle": dash, "linewidth": 1.2}
-        shares = (budget.stored, budget.dissipated, _MICRO * budget.contact, _MICRO * budget.lost)
-        for axes, values in zip(panels, shares, strict=True):
+        shares = (
+            budget.stored,
+            budget.dissipated,
+            _MICRO * budget.contact,
+            _MICRO * budget.lost,
+            budget.external,
+        )
+        for axes, values in zip(panels, shares, strict=False):  # without surroundings there is no last panel
             axes.plot(budget.time, values, label=literal(state.name), **style)
     add_legend(panels[0], loc="upper left")
