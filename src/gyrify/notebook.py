@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gyrify.extras import require
+from gyrify.metrics.quantities import Quantity, flat, shown_in
 from gyrify.outputs import folded_picture
 from gyrify.store.fields import POINT_FIELDS, fields
 from gyrify.store.history import History
@@ -128,20 +129,10 @@ def _library(name: str) -> Any:
 
 def _lines(summary: dict[str, Any]) -> list[tuple[str, str]]:
     """What a summary says, for people: name with unit, and value."""
-    gi, depth, thickness, solver = (
-        summary[key] for key in ("gi", "sulcal_depth_mm", "thickness_mm", "solver")
-    )
-    lines = [
+    values, solver = flat(summary), summary["solver"]
+    return [
         ("status", " ".join(filter(None, (summary["status"], summary["reason"], summary["advice"])))),
-        (f"GI, closing of {gi['closing_radius_mm']:g} mm", _number(gi["closing"])),
-        ("GI, hull", _number(gi["hull"])),
-        ("GI, exposed", _number(gi["exposed"])),
-        ("gyri", str(summary["n_gyri"])),
-        ("sulcal depth, deepest [mm]", _number(depth["max"])),
-        ("sulcal depth, mean [mm]", _number(depth["mean"])),
-        ("thickness at crowns [mm]", _number(thickness["crown"])),
-        ("thickness at fundi [mm]", _number(thickness["fundus"])),
-        ("contour [mm]", _number(summary["contour_length_mm"])),
+        *((_label(quantity, values), _number(values[quantity.key])) for quantity in shown_in("notebook")),
         ("mesh", summary["converged"]["sentence"]),
         *(("warning", sentence) for sentence in summary["warnings"]),
         ("growth time", _number(summary["growth_time"])),
@@ -150,7 +141,12 @@ def _lines(summary: dict[str, Any]) -> list[tuple[str, str]]:
         ("configuration", summary["config_hash"][:12]),
         ("result", summary["result_hash"][:12]),
     ]
-    return lines
+
+
+def _label(quantity: Quantity, values: dict[str, Any]) -> str:
+    if quantity.key == "gi_closing":
+        return f"{quantity.label} of {values['gi_closing_radius_mm']:g} mm"
+    return quantity.axis
 
 
 def _number(value: float | None) -> str:

@@ -23,11 +23,11 @@ from gyrify.measuring import (
     write_metrics,
 )
 from gyrify.metrics import Measures
+from gyrify.metrics.quantities import Quantity, by_key
 from gyrify.onset.visible import visible_time
 from gyrify.solve.stability import StabilityChange
 from gyrify.store.files import fresh
 from gyrify.store.history import History
-from gyrify.units import UNITS
 from gyrify.validity import config_warnings, run_warnings
 from gyrify.validity.converged import convergence
 from gyrify.validity.expected import expected_onset
@@ -122,7 +122,8 @@ def _summary(history: History, measures: Measures) -> dict[str, Any]:
     is_complete = history.status == "completed"
     summary["expected"] = expected_onset(history.config).as_dict()
     summary["converged"] = convergence(history.config, measures.gi_closing, is_complete=is_complete)
-    summary["units"] = {name: UNITS[name] for name in _flat_names(summary) if name in UNITS}
+    known = by_key()
+    summary["units"] = {name: known[name].unit for name in _flat_names(summary) if _has_unit(name, known)}
     summary["warnings"] = [*config_warnings(history.config), *run_warnings(history, summary)]
     return summary
 
@@ -134,6 +135,10 @@ def _parameters(config: Config) -> dict[str, Any]:
         for row in rows(config)
         if row.key in _TOLD or (row.default is not None and row.value != row.default)
     }
+
+
+def _has_unit(name: str, known: Mapping[str, Quantity]) -> bool:
+    return name in known and known[name].unit != ""
 
 
 def _flat_names(table: Mapping[str, Any], prefix: str = "") -> Iterator[str]:

@@ -75,7 +75,8 @@ def read_record(folder: Path, key: str) -> dict[str, Any]:
 
 
 def test_every_quantity_of_a_summary_has_its_column(folded: History) -> None:
-    from gyrify.study.results import QUANTITIES, flat
+    from gyrify.metrics.quantities import flat
+    from gyrify.study.results import column_types
 
     summary = summarise(folded)
     known = {"status", "reason", "advice", "config_hash", "result_hash", "seed", "solver_wall_s"}
@@ -83,7 +84,7 @@ def test_every_quantity_of_a_summary_has_its_column(folded: History) -> None:
     known |= {f"converged_{name}" for name in ("known", "converged", "limit", "sentence", "command")}
     told = ("versions_", "parameters_", "units_")
     found = {name for name in flat(summary) if not name.startswith(told)} - known
-    assert found == set(QUANTITIES) - {"phenotype", "phenotype_rule"}
+    assert found == set(column_types()) - {"phenotype", "phenotype_rule"}
 
 
 def test_the_same_study_has_the_same_bytes_whoever_computes(done: Path, tmp_path: Path) -> None:

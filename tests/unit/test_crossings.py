@@ -14,6 +14,7 @@ import gyrify.onset.smooth as smooth
 from gyrify.config import Config
 from gyrify.errors import SolveError
 from gyrify.metrics import Measures
+from gyrify.metrics.quantities import MEASURED
 from gyrify.onset.crossing import LowestEigenvalue, Root
 from gyrify.onset.smooth import SmoothBranch, SmoothState
 from gyrify.solve.result import Result, Solution, Stats
@@ -65,7 +66,7 @@ def test_the_root_lies_in_its_bracket_and_its_bracket_on_both_sides_of_the_exact
     assert {low, high} <= set(asked)
     assert root.value == pytest.approx(exact, abs=3e-4)
     # singular to a thousandth of the smaller eigenvalue at the ends, or bracketed as closely as asked for
-    ends = min(abs(float(curve(0.0))), abs(float(curve(1.5))))
+    ends = min(abs(float(curve(at))) for at in (0.0, 1.5))
     assert abs(root.pair.eigenvalue) <= 1e-3 * ends or high - low <= 2e-6
     # the state that is kept is the computed one closest to singular
     assert abs(curve(root.state.value)) == min(abs(curve(value)) for value in asked)
@@ -79,13 +80,12 @@ def test_a_root_that_cannot_be_reached_is_approached_from_the_stable_end(
 ) -> None:
     """Newton's method has no answer from 0.05 before the root to some way beyond it."""
     sign = -1.0 if was_unstable else 1.0
-    exact = 0.6 if not was_unstable else 0.4
+    exact = 0.4 if was_unstable else 0.6
 
     def curve(t: float) -> float:
-        stable = sign * (exact - t)
-        if -ahead - 0.05 < stable < 0.05:
+        if -ahead - 0.05 < sign * (exact - t) < 0.05:
             raise SolveError("next to singular")
-        return stable
+        return sign * (exact - t)
 
     root, asked = found(curve, 0.0, 1.0, was_unstable=was_unstable)
     assert not root.is_refined
@@ -150,12 +150,12 @@ def visible(index: Curve, parameter: str = "growth.ratio") -> tuple[VisibleScan,
     """Scan of an index that is known; its gyri are the hundredfold of the value."""
     scan = VisibleScan(Config(), parameter, 1.1)
     asked: list[float] = []
-    measured = dict.fromkeys(Measures.__dataclass_fields__, 0.0)
+    measured = dict.fromkeys((quantity.attribute for quantity in MEASURED), 0.0)
 
     def run(value: float) -> Measures:
         asked.append(value)
         told = {"gi_closing": index(value), "n_gyri": round(100 * value), "contour_length": 600.0}
-        scan._measures[value] = Measures(**(measured | told))  # type: ignore[arg-type]
+        scan._measures[value] = Measures(**(measured | told))
         return scan._measures[value]
 
     scan._run = run  # type: ignore[method-assign]

@@ -134,7 +134,7 @@ def _print_family(console: object, family: Family) -> None:
     from rich.table import Table
 
     from gyrify.config.words import decimals
-    from gyrify.convergence import METRICS
+    from gyrify.convergence.measured import metrics
 
     assert isinstance(console, Console)
     table = Table(title=f"Refined: {family.subject}", title_justify="left")
@@ -146,7 +146,7 @@ def _print_family(console: object, family: Family) -> None:
     table.add_column("limit", justify="right")
     table.add_column("verdict")
     styles = {True: "green", False: "yellow", None: "dim"}
-    for metric in METRICS:
+    for metric in metrics():
         verdict = family.verdicts[metric.key]
         digits = metric.digits if metric.is_count else decimals(verdict.values, metric.digits)
         values = ["-" if value is None else f"{value:.{digits}f}" for value in verdict.values]

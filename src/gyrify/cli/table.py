@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from pyarrow import Table
 
 Expression = Annotated[str, Parameter(allow_leading_hyphen=True)]
-_QUANTITIES = ("gi_closing", "n_gyri", "sulcal_depth_mm_max", "onset_growth_time")
 _PLAIN_WIDTH = 240
 
 
@@ -77,8 +76,10 @@ def _print_csv(rows: Table) -> None:
 
 def _brief(rows: Table) -> Table:
     """Key, status, what is varied, and the first things to look at."""
+    from gyrify.metrics.quantities import shown_in
+
     varied = [name for name in rows.column_names if "." in name or name == "seed"]
-    wanted = ["key", "status", *varied, "phenotype", *_QUANTITIES]
+    wanted = ["key", "status", *varied, "phenotype", *(quantity.key for quantity in shown_in("table"))]
     return rows.select([name for name in wanted if name in rows.column_names])
 
 

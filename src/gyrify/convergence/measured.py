@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
-from gyrify.metrics import Measures
+from gyrify.metrics.quantities import Quantity, shown_in
 from gyrify.onset.visible import visible_time
 from gyrify.store.history import History
 from gyrify.summary import measure_state
+
+_UNITS: Final = {"1": "", "growth time": "time"}
 
 
 @dataclass(frozen=True)
@@ -40,17 +43,19 @@ class Metric:
     least: float = 0.0
 
 
-METRICS: Final = (
-    Metric("gi_closing", "GI, closing"),
-    Metric("gi_hull", "GI, hull"),
-    Metric("gi_exposed", "GI, exposed"),
-    Metric("n_gyri", "gyri", digits=0, is_count=True),
-    Metric("visible_growth_time", "folds visible", "time", 1),
-    Metric("onset_growth_time", "stability lost", "time", 1),
-    Metric("sulcal_depth_mm_max", "deepest sulcus", "mm", 2, least=0.1),
-    Metric("sulcal_depth_mm_mean", "mean sulcal depth", "mm", 2, least=0.1),
-    Metric("elastic_energy_mJ_per_mm", "elastic energy", "mJ/mm", 3),
-)
+def metrics() -> tuple[Metric, ...]:
+    """What is compared, with any quantity that was registered later."""
+    return tuple(
+        Metric(q.key, _name(q), _UNITS.get(q.unit, q.unit), q.decimals or 0, q.type is int, q.least)
+        for q in shown_in("converge")
+    )
+
+
+def _name(quantity: Quantity) -> str:
+    return quantity.label.removesuffix(" at time")
+
+
+METRICS: Final = metrics()
 
 
 def measured(history: History) -> dict[str, float | None]:
@@ -70,17 +75,13 @@ def measured(history: History) -> dict[str, float | None]:
         often late or never where node jitter unfolds the bifurcation.
     """
     measures, onset = measure_state(history), history.onset
-    return {
-        "gi_closing": measures.gi_closing,
-        "gi_hull": measures.gi_hull,
-        "gi_exposed": _finite(measures),
-        "n_gyri": float(measures.n_gyri),
+    known: dict[str, float | None] = {
+        **measures.flat(),
         "visible_growth_time": visible_time(history),
         "onset_growth_time": None if onset is None else onset.growth_time,
-        "sulcal_depth_mm_max": measures.sulcal_depth_max,
-        "sulcal_depth_mm_mean": measures.sulcal_depth_mean,
         "elastic_energy_mJ_per_mm": elastic_energy(history),
     }
+    return {metric.key: _finite(known[metric.key]) for metric in metrics()}
 
 
 def elastic_energy(history: History) -> float:
@@ -90,6 +91,6 @@ def elastic_energy(history: History) -> float:
     return 1e-6 * float(energy.evaluate(history.state_vector(), 0).value)
 
 
-def _finite(measures: Measures) -> float | None:
-    """The exposed index, where any part of the contour is exposed."""
-    return measures.gi_exposed if measures.gi_exposed < float("inf") else None
+def _finite(value: float | None) -> float | None:
+    """Nothing where an index is infinite, since no part of the contour is exposed."""
+    return None if value is None or math.isinf(value) else float(value)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from gyrify.config import Config
-from gyrify.convergence.measured import METRICS
+from gyrify.convergence.measured import metrics
 from gyrify.convergence.plan import Subject, contour_nodes, resolution
 from gyrify.convergence.verdict import RULE, Verdict, judge
 from gyrify.markup import html_rows
@@ -92,7 +92,7 @@ class Family:
                 is_count=metric.is_count,
                 least=metric.least * scale,
             )
-            for metric in METRICS
+            for metric in metrics()
         }
 
     @property
@@ -105,7 +105,7 @@ class Family:
         ]
         notes += [
             f"{metric.name}: {self.verdicts[metric.key].note}."
-            for metric in METRICS
+            for metric in metrics()
             if self.verdicts[metric.key].note
         ]
         gyri = self.verdicts["n_gyri"]
@@ -234,6 +234,6 @@ def _row(level: Level, subject: Subject) -> dict[str, Any]:
         "run": config.config_hash[:12],
         "status": level.status,
         "reason": level.reason,
-        **{metric.key: level.metrics.get(metric.key) for metric in METRICS},
+        **{metric.key: level.metrics.get(metric.key) for metric in metrics()},
         "wall_s": level.wall_s,
     }

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike
@@ -16,14 +20,13 @@ from gyrify.metrics.contour import (
     offset_outline,
     require_positive,
 )
-from gyrify.metrics.folds import folds_about, require_detectable, shape_of_hull
+from gyrify.metrics.folds import Folds, folds_about, require_detectable, shape_of_hull
 from gyrify.metrics.gap import simple_gap
-from gyrify.metrics.gyri import gyrus_shapes
+from gyrify.metrics.gyri import GyrusShapes, gyrus_shapes
 from gyrify.metrics.gyrification import closing_length, exposed_length
 from gyrify.metrics.measures import Measures
 from gyrify.metrics.order import notice_unfit, ordered_contour
-from gyrify.metrics.sharpness import fold_sharpness
-from gyrify.metrics.strip import measure_strip
+from gyrify.metrics.strip import Strip
 from gyrify.metrics.sulci import depth_below
 from gyrify.metrics.thickness import thickness_at_folds
 
@@ -97,47 +100,82 @@ def measure_valid(
     gyrus_prominence, samples = require_detectable(gyrus_prominence, samples)
     lengths = (closing_radius, gyrus_prominence, samples)
     if period is not None:
-        return measure_strip(
-            contour, interface, require_positive("period", period), *lengths, earlier=earlier
-        )
-    return _measure_ring(contour, interface, *lengths, earlier)
+        line = Strip(contour, interface, require_positive("period", period), *lengths, earlier)
+        return Measures.of(line)
+    return Measures.of(Ring(contour, interface, *lengths, earlier))
 
 
-def _measure_ring(
-    vertices: FloatArray,
-    inner: FloatArray,
-    closing_radius: float,
-    gyrus_prominence: float,
-    samples: int,
-    earlier: bool,
-) -> Measures:
-    """Measure a closed contour."""
-    crossing = not shapely.linearrings(vertices).is_simple
-    tissue = filled(vertices) if crossing else shapely.Polygon(vertices)
-    radius = closing_radius if earlier else fitting_radius(tissue, closing_radius)
-    offset = offset_outline(tissue, radius, QUARTER_SEGMENTS if earlier else None)
-    hull = tissue.convex_hull
-    shape = shape_of_hull(hull)
-    folds = folds_about(shape, vertices, gyrus_prominence, samples, None if earlier else hull)
-    depth = depth_below(folds.fundus_points, offset, radius) if folds.n_gyri else np.zeros(1)
-    crown, fundus = thickness_at_folds(folds, inner)
-    gyri = gyrus_shapes(folds)
-    length = float(edge_lengths(vertices).sum())
-    exposed = exposed_length(tissue, radius, np.inf if earlier else mean_radius(tissue))
-    return Measures(
-        gi_hull=length / float(hull.length),
-        gi_closing=length / closing_length(offset, radius, 0.0 if earlier else float(hull.length)),
-        gi_exposed=length / exposed if exposed > 0 else float("inf"),
-        closing_radius=float(closing_radius),
-        n_gyri=folds.n_gyri,
-        sulcal_depth_max=float(depth.max()),
-        sulcal_depth_mean=float(depth.mean()),
-        thickness_crown=crown,
-        thickness_fundus=fundus,
-        gyrus_width=gyri.mean_width,
-        gyrus_flatness=gyri.mean_flatness,
-        fold_sharpness=fold_sharpness(folds),
-        contour_length=length,
-        min_gap=0.0 if crossing else simple_gap(vertices),
-        self_intersecting=crossing,
-    )
+@dataclass(frozen=True, eq=False)
+class Ring:
+    """A closed contour; see `gyrify.metrics.shape.Shape`, and `measure_valid` for the parameters."""
+
+    contour: FloatArray
+    interface: FloatArray
+    closing_radius: float
+    gyrus_prominence: float
+    samples: int
+    earlier: bool = False
+    is_closed: ClassVar[bool] = True
+
+    @cached_property
+    def crosses_itself(self) -> bool:
+        return not shapely.linearrings(self.contour).is_simple
+
+    @cached_property
+    def tissue(self) -> shapely.Polygon:
+        """What the contour encloses."""
+        return filled(self.contour) if self.crosses_itself else shapely.Polygon(self.contour)
+
+    @cached_property
+    def radius(self) -> float:
+        """Radius of the disc that is used [mm]."""
+        return self.closing_radius if self.earlier else fitting_radius(self.tissue, self.closing_radius)
+
+    @cached_property
+    def offset(self) -> shapely.LinearRing:
+        """Outline at this distance outside."""
+        return offset_outline(self.tissue, self.radius, QUARTER_SEGMENTS if self.earlier else None)
+
+    @cached_property
+    def hull(self) -> shapely.Polygon:
+        """Convex hull."""
+        return self.tissue.convex_hull
+
+    @cached_property
+    def length(self) -> float:
+        return float(edge_lengths(self.contour).sum())
+
+    @cached_property
+    def hull_length(self) -> float:
+        return float(self.hull.length)
+
+    @cached_property
+    def closed_length(self) -> float:
+        return closing_length(self.offset, self.radius, 0.0 if self.earlier else self.hull_length)
+
+    @cached_property
+    def exposed_length(self) -> float:
+        return exposed_length(self.tissue, self.radius, np.inf if self.earlier else mean_radius(self.tissue))
+
+    @cached_property
+    def folds(self) -> Folds:
+        hull = None if self.earlier else self.hull
+        smooth = shape_of_hull(self.hull)
+        return folds_about(smooth, self.contour, self.gyrus_prominence, self.samples, hull)
+
+    @cached_property
+    def depth(self) -> FloatArray:
+        fundi = self.folds.fundus_points
+        return depth_below(fundi, self.offset, self.radius) if self.folds.n_gyri else np.zeros(1)
+
+    @cached_property
+    def thickness(self) -> tuple[float, float]:
+        return thickness_at_folds(self.folds, self.interface)
+
+    @cached_property
+    def gyri(self) -> GyrusShapes:
+        return gyrus_shapes(self.folds)
+
+    @cached_property
+    def gap(self) -> float:
+        return 0.0 if self.crosses_itself else simple_gap(self.contour)

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator
 from typing import Any
 
 from gyrify.markup import html_rows
+from gyrify.metrics.quantities import MEASURED, flat
+from gyrify.metrics.shape import Shape
 
 
-@dataclass(frozen=True, repr=False)
 class Measures:
-    """Metrics of one deformed state; lengths in mm.
+    """Metrics of one deformed state; lengths in mm. Each quantity in `gyrify.metrics.quantities` is one.
+
+    Parameters
+    ----------
+    **values
+        A value for each quantity of a state, by the name of its attribute.
 
     Attributes
     ----------
@@ -55,6 +60,35 @@ class Measures:
     min_gap: float
     self_intersecting: bool
 
+    def __init__(self, **values: Any) -> None:
+        names = [quantity.attribute for quantity in MEASURED]
+        if set(values) != set(names):
+            wrong = ", ".join(sorted(set(values) ^ set(names)))
+            raise TypeError(f"Measures takes one value for each quantity; missing or unknown: {wrong}")
+        self.__dict__.update({name: values[name] for name in names})
+
+    @classmethod
+    def of(cls, shape: Shape) -> Measures:
+        """Every quantity of a state."""
+        found = {}
+        for quantity in MEASURED:
+            if quantity.measure is None:
+                raise TypeError(f"nothing measures {quantity.key}")
+            found[quantity.attribute] = quantity.measure(shape)
+        return cls(**found)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"Measures cannot be changed: {name}")
+
+    def __iter__(self) -> Iterator[tuple[str, Any]]:
+        return iter(self.__dict__.items())
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Measures) and self.__dict__ == other.__dict__
+
+    def __hash__(self) -> int:
+        return hash(tuple(self.__dict__.items()))
+
     def __repr__(self) -> str:
         gyri = f"{self.n_gyri} {'gyrus' if self.n_gyri == 1 else 'gyri'}"
         return (
@@ -69,37 +103,19 @@ class Measures:
 
     def as_dict(self) -> dict[str, Any]:
         """Return the metrics nested and named as in ``summary.json``."""
-        return {
-            "gi": {
-                "hull": self.gi_hull,
-                "closing": self.gi_closing,
-                "closing_radius_mm": self.closing_radius,
-                "exposed": self.gi_exposed,
-            },
-            "n_gyri": self.n_gyri,
-            "sulcal_depth_mm": {"max": self.sulcal_depth_max, "mean": self.sulcal_depth_mean},
-            "thickness_mm": {"crown": self.thickness_crown, "fundus": self.thickness_fundus},
-            "gyrus_width_mm": self.gyrus_width,
-            "gyrus_flatness": self.gyrus_flatness,
-            "fold_sharpness": self.fold_sharpness,
-            "contour_length_mm": self.contour_length,
-            "min_gap_mm": self.min_gap,
-            "self_intersecting": self.self_intersecting,
-        }
+        nested: dict[str, Any] = {}
+        for quantity in MEASURED:
+            group, dot, name = quantity.path.partition(".")
+            value = self.__dict__[quantity.attribute]
+            if dot:
+                nested.setdefault(group, {})[name] = value
+            else:
+                nested[group] = value
+        return nested
 
     def flat(self) -> dict[str, Any]:
         """Return the metrics named as in ``metrics.csv``: the keys of `as_dict` joined with ``_``."""
-        return _flatten(self.as_dict())
-
-
-def _flatten(nested: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Return nested mappings as one, their keys joined with ``_``."""
-    flat: dict[str, Any] = {}
-    for key, value in nested.items():
-        flat |= (
-            _flatten(value, f"{prefix}{key}_") if isinstance(value, Mapping) else {f"{prefix}{key}": value}
-        )
-    return flat
+        return flat(self.as_dict())
 
 
 def _shown(value: object) -> str:

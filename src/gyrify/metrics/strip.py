@@ -9,6 +9,9 @@ crowns, one period long.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 import shapely
@@ -19,15 +22,12 @@ from gyrify.metrics.contour import (
     FloatArray,
     filled,
     offset_outline,
-    require_positive,
 )
 from gyrify.metrics.folds import Folds, periodic_extrema
 from gyrify.metrics.gap import DETOUR
-from gyrify.metrics.gyri import gyrus_shapes
+from gyrify.metrics.gyri import GyrusShapes, gyrus_shapes
 from gyrify.metrics.gyrification import at_least_hull, closing_length, exposed_length
-from gyrify.metrics.measures import Measures
 from gyrify.metrics.sawtooth import without_sawteeth
-from gyrify.metrics.sharpness import fold_sharpness
 from gyrify.metrics.sulci import depth_below
 from gyrify.metrics.thickness import thickness_at_folds
 
@@ -40,49 +40,79 @@ _LARGEST = 100.0
 _WIDE = 10.0
 
 
-def measure_strip(
-    contour: FloatArray,
-    interface: FloatArray,
-    period: float,
-    closing_radius: float,
-    gyrus_prominence: float,
-    samples: int,
-    *,
-    earlier: bool = False,
-) -> Measures:
-    """Measure one deformed state of a strip; parameters as in `gyrify.metrics.measure_valid`.
+@dataclass(frozen=True, eq=False)
+class Strip:
+    """One period of a contour; see `gyrify.metrics.shape.Shape`, and `measure_valid` for the parameters.
 
     Heights are measured from the mean level of the contour. The gap counts neighbours as in
     `gyrify.metrics.min_gap`, images included; a contour without folds has none, and it is infinite.
     """
-    require_positive("period", period)
-    line = _from_lowest(contour, period)
-    crossing = not shapely.linestrings(_repeated(line, period, range(-1, 3))).is_simple
-    length = float(_arc(line, period)[-1])
-    radius = closing_radius if earlier else min(closing_radius, _LARGEST * period)
-    closing, exposed, offset = _exposed_lengths(line, period, radius)
-    closing = closing if earlier else at_least_hull(closing, period, radius)
-    folds = _folds(line, period, gyrus_prominence, samples)
-    depth = depth_below(folds.fundus_points, offset, radius) if folds.n_gyri else np.zeros(1)
-    crown, fundus = thickness_at_folds(folds, _repeated(interface, period, range(-1, 3)), closed=False)
-    gyri = gyrus_shapes(folds, closed=False)
-    return Measures(
-        gi_hull=length / period,
-        gi_closing=length / closing,
-        gi_exposed=length / exposed if exposed > 0 else math.inf,
-        closing_radius=float(closing_radius),
-        n_gyri=folds.n_gyri,
-        sulcal_depth_max=float(depth.max()),
-        sulcal_depth_mean=float(depth.mean()),
-        thickness_crown=crown,
-        thickness_fundus=fundus,
-        gyrus_width=gyri.mean_width,
-        gyrus_flatness=gyri.mean_flatness,
-        fold_sharpness=fold_sharpness(folds, closed=False),
-        contour_length=length,
-        min_gap=0.0 if crossing else _gap(line, period),
-        self_intersecting=crossing,
-    )
+
+    contour: FloatArray
+    interface: FloatArray
+    period: float
+    closing_radius: float
+    gyrus_prominence: float
+    samples: int
+    earlier: bool = False
+    is_closed: ClassVar[bool] = False
+
+    @cached_property
+    def line(self) -> FloatArray:
+        """The contour from its deepest vertex on."""
+        return _from_lowest(self.contour, self.period)
+
+    @cached_property
+    def crosses_itself(self) -> bool:
+        return not shapely.linestrings(_repeated(self.line, self.period, range(-1, 3))).is_simple
+
+    @cached_property
+    def radius(self) -> float:
+        """Radius of the disc that is used [mm]."""
+        return self.closing_radius if self.earlier else min(self.closing_radius, _LARGEST * self.period)
+
+    @cached_property
+    def _lengths(self) -> tuple[float, float, shapely.LinearRing]:
+        return _exposed_lengths(self.line, self.period, self.radius)
+
+    @cached_property
+    def length(self) -> float:
+        return float(_arc(self.line, self.period)[-1])
+
+    @property
+    def hull_length(self) -> float:
+        return self.period
+
+    @cached_property
+    def closed_length(self) -> float:
+        closing = self._lengths[0]
+        return closing if self.earlier else at_least_hull(closing, self.period, self.radius)
+
+    @property
+    def exposed_length(self) -> float:
+        return self._lengths[1]
+
+    @cached_property
+    def folds(self) -> Folds:
+        return _folds(self.line, self.period, self.gyrus_prominence, self.samples)
+
+    @cached_property
+    def depth(self) -> FloatArray:
+        fundi = self.folds.fundus_points
+        return depth_below(fundi, self._lengths[2], self.radius) if self.folds.n_gyri else np.zeros(1)
+
+    @cached_property
+    def thickness(self) -> tuple[float, float]:
+        inner = _repeated(self.interface, self.period, range(-1, 3))
+        return thickness_at_folds(self.folds, inner, closed=False)
+
+    @cached_property
+    def gyri(self) -> GyrusShapes:
+        return gyrus_shapes(self.folds, closed=False)
+
+    @cached_property
+    def gap(self) -> float:
+        return 0.0 if self.crosses_itself else _gap(self.line, self.period)
 
 
 def _repeated(line: FloatArray, period: float, periods: range) -> FloatArray:

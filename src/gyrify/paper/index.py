@@ -15,8 +15,8 @@ from gyrify.errors import ConfigError
 from gyrify.metrics.contour import filled, fitting_radius, offset_outline
 from gyrify.metrics.gyrification import closing_length
 from gyrify.metrics.measure import measure_valid
+from gyrify.metrics.quantities import flat
 from gyrify.study import StoredPoint
-from gyrify.study.results import flat
 
 GiDefinition = Literal["closing", "hull", "exposed", "picture"]
 STANDARD_RADIUS: Final = 10.0

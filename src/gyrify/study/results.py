@@ -12,6 +12,7 @@ from gyrify.arguments import Pathlike, as_path
 from gyrify.config import Config
 from gyrify.config.words import shorten, show
 from gyrify.errors import ConfigError, HistoryError
+from gyrify.metrics.quantities import flat, quantities
 from gyrify.phenotype import classify, grown_thickness
 from gyrify.store.files import fresh
 from gyrify.study.archive import Record
@@ -46,57 +47,12 @@ _LEFT_OUT: Final = {
 # What an incomplete run has too.
 _OF_ANY_END: Final = ("growth_time", "solver_", "warnings", "expected_")
 _INT, _TEXT, _BOOL, _FLOAT = "int64", "string", "bool", "float64"
-# Columns that are always there, with their types; what else a summary holds comes after them.
-QUANTITIES: Final = {
-    "growth_time": _FLOAT,
-    "gi_hull": _FLOAT,
-    "gi_closing": _FLOAT,
-    "gi_closing_radius_mm": _FLOAT,
-    "gi_exposed": _FLOAT,
-    "n_gyri": _INT,
-    "sulcal_depth_mm_max": _FLOAT,
-    "sulcal_depth_mm_mean": _FLOAT,
-    "thickness_mm_crown": _FLOAT,
-    "thickness_mm_fundus": _FLOAT,
-    "gyrus_width_mm": _FLOAT,
-    "gyrus_flatness": _FLOAT,
-    "fold_sharpness": _FLOAT,
-    "contour_length_mm": _FLOAT,
-    "min_gap_mm": _FLOAT,
-    "self_intersecting": _BOOL,
-    "min_J": _FLOAT,
-    "min_J_elastic": _FLOAT,
-    "nodes_per_wavelength": _FLOAT,
-    "onset_growth_time": _FLOAT,
-    "onset_kind": _TEXT,
-    "onset_mode_number": _INT,
-    "onset_wavelength_mm": _FLOAT,
-    "onset_eigenvalue": _FLOAT,
-    "onset_visible_delay": _FLOAT,
-    "visible_growth_time": _FLOAT,
-    "relaxed_gi_closing": _FLOAT,
-    "relaxed_n_gyri": _INT,
-    "relaxed_moved_mm": _FLOAT,
-    "relaxed_is_kept": _BOOL,
-    "stable": _BOOL,
-    "stability_note": _TEXT,
-    "expected_growth_time": _FLOAT,
-    "expected_mode_number": _INT,
-    "expected_wavelength_mm": _FLOAT,
-    "converged_error": _FLOAT,
-    "warnings": _TEXT,
-    "solver_increments": _INT,
-    "solver_newton_iterations": _INT,
-    "solver_factorizations": _INT,
-    "solver_analyses": _INT,
-    "solver_rejected": _INT,
-    "solver_residual": _FLOAT,
-    "solver_tolerance": _FLOAT,
-    "solver_linear_solver": _TEXT,
-    "solver_contact_library": _TEXT,
-    "phenotype": _TEXT,
-    "phenotype_rule": _TEXT,
-}
+_ALIAS: Final[dict[type, str]] = {int: _INT, str: _TEXT, bool: _BOOL, float: _FLOAT}
+
+
+def column_types() -> dict[str, str]:
+    """Columns that are always there, with their types; what else a summary holds comes after them."""
+    return {quantity.key: _ALIAS[quantity.type] for quantity in quantities() if quantity.in_results}
 
 
 def write_results(folder: Path, points: Sequence[Point], records: Mapping[str, Record]) -> None:
@@ -141,7 +97,9 @@ def results_table(points: Sequence[Point], records: Mapping[str, Record]) -> Tab
 
     varied = list(dict.fromkeys(key for point in points for key in point.parameters))
     rows = [_row(point, records[point.key], varied) for point in points]
-    names = list(dict.fromkeys([*_IDENTITY, *varied, *QUANTITIES, *(name for row in rows for name in row)]))
+    names = list(
+        dict.fromkeys([*_IDENTITY, *varied, *column_types(), *(name for row in rows for name in row)])
+    )
     last = ("phenotype", "phenotype_rule", "result_hash")
     names = [*(name for name in names if name not in last), *last]
     columns, described = [], []
@@ -201,7 +159,7 @@ def _require_columns(table: Table) -> None:
     kinds = {name: _FLOAT if kind == "double" else kind for name, kind in kinds.items()}
     if len(kinds) < table.num_columns:
         raise ValueError("a column appears twice")
-    wanted = dict.fromkeys(_IDENTITY, _TEXT) | QUANTITIES | {"result_hash": _TEXT, "wall_s": "nothing"}
+    wanted = dict.fromkeys(_IDENTITY, _TEXT) | column_types() | {"result_hash": _TEXT, "wall_s": "nothing"}
     for name, kind in kinds.items():
         known = wanted.get(name)
         if kind not in (_INT, _TEXT, _BOOL, _FLOAT) or (known is not None and kind != known):
@@ -214,15 +172,6 @@ def _require_columns(table: Table) -> None:
     for key in table["key"].to_pylist():
         if not re.fullmatch(r"[0-9a-f]{12}", key):
             raise ValueError(f"{show(key)} is not the key of a run")
-
-
-def flat(nested: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Nested mappings as one, their keys joined with ``_``, as in ``metrics.csv``."""
-    found: dict[str, Any] = {}
-    for key, value in nested.items():
-        inner = flat(value, f"{prefix}{key}_") if isinstance(value, Mapping) else {f"{prefix}{key}": value}
-        found |= inner
-    return found
 
 
 def _row(point: Point, record: Record, varied: Iterable[str]) -> dict[str, Any]:
@@ -264,8 +213,8 @@ def _kind(name: str, values: Sequence[object]) -> DataType:
     """Type of a column: the known one, or that of its values."""
     import pyarrow as pa
 
-    if name in QUANTITIES:
-        return pa.type_for_alias(QUANTITIES[name])
+    if (known := column_types().get(name)) is not None:
+        return pa.type_for_alias(known)
     kinds = {type(value) for value in values if value is not None}
     if not kinds:
         return pa.string() if name == "result_hash" or name in _IDENTITY else pa.float64()

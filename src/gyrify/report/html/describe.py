@@ -8,6 +8,7 @@ from typing import Any
 from gyrify.config import Config
 from gyrify.config.table import plain, rows
 from gyrify.config.words import decimals
+from gyrify.metrics.quantities import flat, shown_in
 from gyrify.store.history import History
 
 
@@ -65,28 +66,27 @@ def subtitle(config: Config) -> str:
 
 def numbers(summary: dict[str, Any]) -> list[list[Any]]:
     """Label, value, unit, decimals (None: as needed) and explanation of what the run came to."""
-    gi, depth, thickness, onset = (summary[key] for key in ("gi", "sulcal_depth_mm", "thickness_mm", "onset"))
-    sentence = summary["converged"]["sentence"]
-    closing = (
-        f"Contour over the outline of the closing with radius {gi['closing_radius_mm']:g} mm. {sentence}"
-    )
-    found = [
-        ["GI, closing", gi["closing"], "", 3, closing],
-        ["GI, hull", gi["hull"], "", 3, "Contour over the perimeter of the convex hull"],
-        ["GI, exposed", gi["exposed"], "", 3, "Contour over the part of it on the closing's outline"],
-        ["gyri", summary["n_gyri"], "", None, "Maxima of the normal displacement from the smooth contour"],
-        _length("deepest sulcus", depth["max"], "Distance of the deepest fundus to the closing's outline"),
-        _length("cortex at crowns", thickness["crown"], "Mean shortest distance to the interface"),
-        _length("cortex at fundi", thickness["fundus"], "Mean shortest distance to the interface"),
-    ]
-    if onset is not None:
-        lost = f"Growth time at which the slice lost stability. {summary['stability_note']}".strip()
-        found.append(["stability lost at time", onset["growth_time"], "", 1, lost])
+    values, mesh = flat(summary), summary["converged"]["sentence"]
+    more = {
+        "gi_closing": f"with radius {values['gi_closing_radius_mm']:g} mm. {mesh}",
+        "onset_growth_time": summary["stability_note"],
+    }
+    found = []
+    for quantity in shown_in("run"):
+        if (value := values.get(quantity.key)) is None and quantity.key not in values:
+            continue
+        unit = "" if quantity.unit in ("1", "growth time") else quantity.unit
+        usual = quantity.decimals and decimals([value], quantity.decimals)
+        about = _sentence(quantity.about, more.get(quantity.key, ""))
+        found.append([quantity.label, value, unit, usual, about])
     return found
 
 
-def _length(label: str, value: float, about: str) -> list[Any]:
-    return [label, value, "mm", decimals([value], 2), about]
+def _sentence(about: str, more: str) -> str:
+    """What a quantity is, and what else there is to say: a part of the sentence, or one of its own."""
+    if not more:
+        return about
+    return f"{about} {more}" if more[0].islower() else f"{about}. {more}"
 
 
 def settings(config: Config) -> list[dict[str, Any]]:

@@ -8,6 +8,7 @@ from typing import Any, Final
 
 from gyrify.config.table import plain
 from gyrify.config.words import decimals
+from gyrify.metrics.quantities import shown_in
 from gyrify.report.html.colours import colour_maps
 from gyrify.report.html.page import STUDY_SCRIPTS, page
 from gyrify.report.html.study_runs import described_run, warnings_of
@@ -19,17 +20,6 @@ from gyrify.study import read_results
 _BUDGET: Final = 12_000_000
 _LEAST: Final = 60_000
 _MOST: Final = 24_000_000
-# Column, label, decimals (None: as needed).
-_QUANTITIES: Final = (
-    ("gi_closing", "GI, closing", 3),
-    ("gi_hull", "GI, hull", 3),
-    ("n_gyri", "gyri", None),
-    ("sulcal_depth_mm_max", "deepest sulcus [mm]", 2),
-    ("thickness_mm_crown", "cortex at crowns [mm]", 2),
-    ("thickness_mm_fundus", "cortex at fundi [mm]", 2),
-    ("onset_growth_time", "stability lost at time", 1),
-    ("wall_s", "time spent [s]", 1),
-)
 
 
 def study_page(folder: Path, name: str) -> str:
@@ -81,9 +71,9 @@ def _columns(rows: Sequence[Row], keys: Sequence[str]) -> list[dict[str, Any]]:
     if rows and rows[0].get("phenotype") is not None:
         columns.append(_column("phenotype", "phenotype", is_number=False))
     return columns + [
-        _column(key, label, usual and decimals((row.get(key) for row in rows), usual))
-        for key, label, usual in _QUANTITIES
-        if any(row.get(key) is not None for row in rows)
+        _column(q.key, q.axis, q.decimals and decimals((row.get(q.key) for row in rows), q.decimals))
+        for q in shown_in("study")
+        if any(row.get(q.key) is not None for row in rows)
     ]
 
 
@@ -103,7 +93,9 @@ def _values(row: Row, keys: Sequence[str]) -> dict[str, Any]:
     """Values of the table's columns in one row."""
     found = {key: row[key] if isinstance(row[key], int | float) else plain(row[key]) for key in keys}
     found["n_warnings"] = len(warnings_of(row))
-    return found | {key: row.get(key) for key in ("phenotype", *(key for key, *_ in _QUANTITIES))}
+    return found | {
+        key: row.get(key) for key in ("phenotype", *(quantity.key for quantity in shown_in("study")))
+    }
 
 
 def _title(row: Row, keys: Sequence[str]) -> str:
