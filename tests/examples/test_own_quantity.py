@@ -45,7 +45,7 @@ def folder(registered, tiny: Config, tmp_path_factory: pytest.TempPathFactory) -
     return folder
 
 
-def test_it_is_measured_of_every_state(registered, folder: Path) -> None:
+def test_it_is_measured_of_every_state(folder: Path) -> None:
     history = gyrify.History.load(folder / "run")
     for index in (0, len(history) - 1):
         measures = gyrify.measure_state(history, index)
