@@ -14,7 +14,7 @@ from pathlib import Path
 from filelock import FileLock
 
 from gyrify.config import Config
-from gyrify.simulation import simulate
+from gyrify.run.simulation import simulate
 
 TINY = {
     "mesh.n_around": 48,

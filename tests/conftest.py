@@ -11,7 +11,7 @@ import pytest
 from slices import FOLDING, TINY
 
 from gyrify.config import Config
-from gyrify.simulation import simulate
+from gyrify.run.simulation import simulate
 from gyrify.store import History
 
 

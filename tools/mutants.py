@@ -39,7 +39,7 @@ COMPILED = (
     "energy/kernels.py",
     "energy/bernstein.py",
     "energy/cell.py",
-    "energy/lanes.py",
+    "energy/batch.py",
     "energy/dashpot.py",
     "energy/tangents.py",
     "energy/projection.py",

@@ -14,7 +14,7 @@ import numpy as np
 
 from gyrify import Config
 from gyrify.errors import ConfigError, MeshError
-from gyrify.meshing import build_mesh
+from gyrify.model.meshing import build_mesh
 
 Values = dict[str, Any]
 RANGES: Final[dict[str, dict[str, tuple[float, float]]]] = {

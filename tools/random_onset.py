@@ -22,8 +22,8 @@ import numpy as np
 
 from gyrify.config import Config
 from gyrify.errors import ConfigError, MeshError, SolveError
-from gyrify.model import Slice
-from gyrify.onset.search import MARKS, OnsetSearch
+from gyrify.model.slice import Slice
+from gyrify.run.onset.onset_search import MARKS, OnsetSearch
 from gyrify.solve.stability import Onset
 from gyrify.theory import Annulus, Bilayer, critical_growth_time, critical_wrinkle
 

@@ -34,11 +34,11 @@ sys.path.insert(0, str(Path(__file__).parent))
 from random_configurations import SPACES, configuration
 
 from gyrify import Config, History
+from gyrify.base.pool import Watcher, each, go_on
 from gyrify.cli import main as gyrify
 from gyrify.cli.codes import COMPLETED, FAILED, INTERRUPTED
 from gyrify.cli.codes import STOPPED as LIMITED
 from gyrify.errors import GyrifyError
-from gyrify.pool import Watcher, each, go_on
 from gyrify.solve.result import Result
 from gyrify.verify import verify
 

@@ -7,7 +7,7 @@ from bench.peers.cells import Assembler, GrownCells, disagreement
 from bench.slices import configuration, folded_state
 from bench.timing import Sample, interleaved
 from gyrify.energy.term import FloatArray
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
 
 # Relative difference above which a comparison is refused.
 AGREEMENT = 1e-10

@@ -11,7 +11,7 @@ import scipy.sparse.linalg as sla
 
 from bench.peers.explicit import add_forces, advance, steps
 from gyrify.energy.term import FloatArray
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
 
 # Loading time of BrainGrowth in crossings of the half length by a shear wave.
 CROSSINGS = 10.0

@@ -11,8 +11,8 @@ import numpy as np
 
 from gyrify import Config, History, simulate
 from gyrify.errors import ConfigError
-from gyrify.model import Slice
-from gyrify.simulation import new_run
+from gyrify.model.slice import Slice
+from gyrify.run.simulation import new_run
 from gyrify.solve.linear import linear_solver
 
 # A slice that folds into contact in a fraction of a second, to try the benchmarks out.

@@ -14,12 +14,12 @@ from pathlib import Path
 from typing import Any
 
 from gyrify import Config
-from gyrify.paper.bench import Bench
 from gyrify.paper.cases import BOTH, EQUAL, SOFT, STIFFNESS, THICK, Case, threshold_ends
 from gyrify.paper.index import STANDARD_INDEX
 from gyrify.paper.reading import Mechanics, Reading, point_of
 from gyrify.paper.reproduce import known_rows
 from gyrify.paper.scoreboard import score
+from gyrify.paper.simulations import Bench
 from gyrify.theory import Annulus, critical_growth_ratio
 
 DATA = Path(__file__).with_name("exclusion.json")

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullLocator
 
 from gyrify.convergence import METRICS, judge
-from gyrify.report.convergence import Shape, slices_figure
+from gyrify.report.convergence_figures import Shape, slices_figure
 from gyrify.report.figures import save_figure
 
 HERE = Path(__file__).parent

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
 from gyrify.report.figures import save_figure
-from gyrify.report.page import FONT
+from gyrify.report.layout import FONT
 
 # What has to hold at once, with its observations and colour (Okabe and Ito).
 GROUPS: dict[str, tuple[tuple[str, ...], str]] = {

@@ -14,8 +14,8 @@ from playwright.sync_api import Browser, sync_playwright
 
 from gyrify.config import Config
 from gyrify.report.html import run_page, write_page
-from gyrify.report.html.study import study_page
-from gyrify.simulation import simulate
+from gyrify.report.html.page_of_study import study_page
+from gyrify.run.simulation import simulate
 from gyrify.study import Study, run_study
 
 HERE = Path(__file__).parent

@@ -15,9 +15,9 @@ sys.path.insert(0, str(HERE.parents[1] / "tests" / "verification"))
 from strip_onset import StripMesh, onset, theory  # noqa: E402
 
 from gyrify import Config, simulate  # noqa: E402
-from gyrify.outputs import folded_picture  # noqa: E402
 from gyrify.report import save_figure  # noqa: E402
-from gyrify.summary import summarise  # noqa: E402
+from gyrify.report.outputs import folded_picture  # noqa: E402
+from gyrify.run.summary import summarise  # noqa: E402
 
 RATIOS = {"1/1.36": 1 / 1.36, "1": 1.0, "1.54": 1.54, "2": 2.0, "3": 3.0}
 NAMES = {"isotropic": "isotropic growth, z blocked", "uniaxial": "growth in x only"}

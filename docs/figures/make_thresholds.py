@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 from gyrify import Config, simulate
 from gyrify.errors import SolveError
-from gyrify.threshold.stability import StabilityScan
+from gyrify.threshold.stability_scan import StabilityScan
 
 HERE = Path(__file__).parent
 DATA: dict[str, Any] = json.loads((HERE / "thresholds.json").read_text(encoding="utf-8"))

@@ -8,10 +8,10 @@ import tempfile
 from pathlib import Path
 
 from gyrify import Config, Study, run_study, simulate
-from gyrify.outputs import folded_picture
 from gyrify.report import save_figure
+from gyrify.report.outputs import folded_picture
 from gyrify.report.study_pictures import write_study_pictures
-from gyrify.summary import summarise
+from gyrify.run.summary import summarise
 
 HERE = Path(__file__).parent
 NAME = "tutorial-phase-diagram.png"

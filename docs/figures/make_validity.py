@@ -7,10 +7,10 @@ from typing import Any
 
 from gyrify.config import Config
 from gyrify.errors import GyrifyError
-from gyrify.simulation import simulate
-from gyrify.summary import measure_state
-from gyrify.validity.expected import expected_onset
-from gyrify.validity.resolution import _SmoothMesh
+from gyrify.run.simulation import simulate
+from gyrify.run.summary import measure_state
+from gyrify.run.validity.expected import expected_onset
+from gyrify.run.validity.resolution import _SmoothMesh
 
 CIRCLE = {"geometry.shape": "circle"}
 TISSUES: dict[str, dict[str, Any]] = {

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from gyrify import Config
 from gyrify.phenotype import classify, grown_thickness
 from gyrify.report.figures import save_figure
-from gyrify.report.page import FONT
+from gyrify.report.layout import FONT
 from gyrify.report.paper_figures import Outlines, draw_slice
 from gyrify.study import Point, StoredPoint, run_points
 from gyrify.study.results import flat

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
         MeshError,
         SolveError,
     )
-    from gyrify.measuring import measure_state
     from gyrify.mesh import Mesh
     from gyrify.metrics import (
         Measures,
@@ -32,13 +31,14 @@ if TYPE_CHECKING:
         length_increase,
         measure,
     )
-    from gyrify.outputs import write_outputs
     from gyrify.report.animate import animate
+    from gyrify.report.outputs import write_outputs
     from gyrify.report.plot import plot
-    from gyrify.simulation import Progress, resume, simulate
+    from gyrify.run.measuring import measure_state
+    from gyrify.run.simulation import Progress, resume, simulate
+    from gyrify.run.summary import summarise
     from gyrify.store import History
     from gyrify.study import Study, read_results, run_study
-    from gyrify.summary import summarise
     from gyrify.threshold import Threshold, critical_growth
 
 __version__ = "0.1.0"
@@ -56,7 +56,7 @@ _HOMES = {
     "Measures": "metrics",
     "Mesh": "mesh",
     "MeshError": "errors",
-    "Progress": "simulation",
+    "Progress": "run.simulation",
     "SolveError": "errors",
     "Study": "study",
     "Threshold": "threshold",
@@ -69,14 +69,14 @@ _HOMES = {
     "gyrification_index": "metrics",
     "length_increase": "metrics",
     "measure": "metrics",
-    "measure_state": "measuring",
+    "measure_state": "run.measuring",
     "read_results": "study",
     "plot": "report.plot",
-    "resume": "simulation",
+    "resume": "run.simulation",
     "run_study": "study",
-    "simulate": "simulation",
-    "summarise": "summary",
-    "write_outputs": "outputs",
+    "simulate": "run.simulation",
+    "summarise": "run.summary",
+    "write_outputs": "report.outputs",
 }
 
 __all__ = [

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from gyrify import Config
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 

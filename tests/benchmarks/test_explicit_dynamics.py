@@ -10,7 +10,7 @@ from bench.body import Body, stable_step
 from bench.peers.explicit import add_forces
 
 from gyrify import simulate
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
 
 
 def test_forces_are_those_of_the_energy(problem: Slice, state: np.ndarray) -> None:

@@ -8,7 +8,7 @@ from bench.iteration import EVERY, METHODS, keeping
 from bench.split import clocked
 
 from gyrify import simulate
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
 from gyrify.solve.linear import SuperLU
 
 

@@ -8,7 +8,7 @@ from bench.peers.cells import GrownCells, disagreement
 from bench.peers.solid import GrownSolid
 
 from gyrify import Config, simulate
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
 
 TIME = 400.0
 LIBRARIES = [

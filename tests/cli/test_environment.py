@@ -101,7 +101,7 @@ def test_only_what_is_wrong_is_set_aside(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_a_backend_that_is_not_there_is_no_obstacle_in_python_either() -> None:
-    code = "import gyrify.outputs, matplotlib, os; print(os.environ['MPLBACKEND'])"
+    code = "import gyrify.report.outputs, matplotlib, os; print(os.environ['MPLBACKEND'])"
     done = subprocess.run(
         [sys.executable, "-c", code],
         env={**os.environ, "MPLBACKEND": UNKNOWN},

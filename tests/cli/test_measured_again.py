@@ -10,11 +10,11 @@ import pytest
 
 from gyrify.cli import main
 from gyrify.config import Config
-from gyrify.measuring import earlier_rows
-from gyrify.outputs import write_outputs
-from gyrify.simulation import simulate
+from gyrify.report.outputs import write_outputs
+from gyrify.run.measuring import earlier_rows
+from gyrify.run.simulation import simulate
+from gyrify.run.summary import earlier_summary
 from gyrify.store import History
-from gyrify.summary import earlier_summary
 from gyrify.verify import verify
 
 Capture = pytest.CaptureFixture[str]

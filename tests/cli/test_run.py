@@ -16,7 +16,7 @@ import pytest
 
 from gyrify.cli import main
 from gyrify.config import Config
-from gyrify.simulation import simulate
+from gyrify.run.simulation import simulate
 from gyrify.store import History
 
 Capture = pytest.CaptureFixture[str]

@@ -13,12 +13,12 @@ from pathlib import Path
 import pytest
 
 import gyrify
-from gyrify import outputs
 from gyrify.cli import main
 from gyrify.config import Config
 from gyrify.errors import ConfigError, HistoryError
-from gyrify.run import Progress
-from gyrify.simulation import new_run, simulate
+from gyrify.report import outputs
+from gyrify.run.running import Progress
+from gyrify.run.simulation import new_run, simulate
 from gyrify.store import History
 
 Capture = pytest.CaptureFixture[str]

@@ -19,7 +19,7 @@ import pytest
 from gyrify.cli import main
 from gyrify.config import Config
 from gyrify.errors import HistoryError
-from gyrify.simulation import simulate
+from gyrify.run.simulation import simulate
 from gyrify.store import History
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")

@@ -15,7 +15,7 @@ from gyrify.cli import main
 from gyrify.cli.app import app
 from gyrify.config import Config
 from gyrify.errors import ConfigError
-from gyrify.simulation import simulate
+from gyrify.run.simulation import simulate
 from gyrify.store import History
 from gyrify.threshold import critical_growth
 

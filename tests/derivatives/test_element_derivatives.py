@@ -15,8 +15,8 @@ from gyrify.energy.elastic import CellPattern, ElasticEnergy
 from gyrify.energy.kinematics import ElasticKinematics, Simplices
 from gyrify.energy.mean_dilatation import MeanDilatationEnergy, PatchPattern
 from gyrify.mesh import Mesh
+from gyrify.mesh.layered_grid import Layers
 from gyrify.mesh.ring import elliptic_ring
-from gyrify.mesh.sheet import Layers
 from gyrify.physics.isotropic import energy_density, first_piola
 
 STEPS = 10.0 ** -np.arange(1.0, 9.5, 0.5)

@@ -11,7 +11,7 @@ from blocks import ROOT
 
 import gyrify
 from gyrify.config import Config
-from gyrify.config.table import rows
+from gyrify.config.rows import rows
 
 DOCS = ROOT / "docs"
 

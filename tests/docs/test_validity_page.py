@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from gyrify.validity import after, before
-from gyrify.validity.collapse import COLLAPSED
-from gyrify.validity.converged import LIMITS
-from gyrify.validity.expected import expected_onset
-from gyrify.validity.locking import LOCKING_POISSON_RATIO
-from gyrify.validity.resolution import LATE
+from gyrify.run.validity import after, before
+from gyrify.run.validity.collapse import COLLAPSED
+from gyrify.run.validity.converged import LIMITS
+from gyrify.run.validity.expected import expected_onset
+from gyrify.run.validity.locking import LOCKING_POISSON_RATIO
+from gyrify.run.validity.resolution import LATE
 
 PAGE = (Path(__file__).parents[2] / "docs" / "validity.md").read_text(encoding="utf-8")
 BEFORE, AFTER = PAGE.split("## Before a run")[1].split("## After a run")

@@ -13,12 +13,12 @@ import gyrify
 from gyrify.config import Config
 from gyrify.convergence.measured import measured, metrics
 from gyrify.metrics.quantities import MEASURED
-from gyrify.outputs import write_outputs
 from gyrify.report.html.describe import numbers
-from gyrify.report.html.study import study_page
+from gyrify.report.html.page_of_study import study_page
+from gyrify.report.outputs import write_outputs
+from gyrify.run.summary import summarise
 from gyrify.study import Point, run_points
 from gyrify.study.results import write_results
-from gyrify.summary import summarise
 
 KEY = "buried_fraction"
 

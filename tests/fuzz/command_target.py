@@ -38,17 +38,17 @@ TRAPS = (
     "results.parquet.partial",
 )
 _LEFT_OUT = (
-    "gyrify.meshing.build_mesh",
+    "gyrify.model.meshing.build_mesh",
     "gyrify.threshold.critical_growth",
     "gyrify.convergence.converge",
-    "gyrify.paper.bench.Bench",
-    "gyrify.study.book.Book.complete",
+    "gyrify.paper.simulations.Bench",
+    "gyrify.study.known_points.Book.complete",
     "gyrify.report.plot.plot",
     "gyrify.report.animate.animate",
     "gyrify.verify.verify",
     "gyrify.store.export._write_vtu",
     "gyrify.store.export.write_xdmf",
-    "gyrify.run.Run.grow",
+    "gyrify.run.running.Run.grow",
 )
 
 
@@ -71,7 +71,7 @@ def without_computing() -> Iterator[None]:
     with contextlib.ExitStack() as stack:
         for name in _LEFT_OUT:
             stack.enter_context(mock.patch(name, _leave_out))
-        stack.enter_context(mock.patch("gyrify.simulation.Slice", _Slice))
+        stack.enter_context(mock.patch("gyrify.run.simulation.Slice", _Slice))
         stack.enter_context(mock.patch("gyrify.report.html.run_page", return_value="page"))
         stack.enter_context(mock.patch("os.cpu_count", return_value=2))
         yield

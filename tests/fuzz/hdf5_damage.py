@@ -19,7 +19,7 @@ _IN_METADATA: Final = 0.8
 @functools.cache
 def stored_run() -> dict[str, bytes]:
     """Journal and time series of a tiny run, as `gyrify run` leaves them."""
-    from gyrify.simulation import simulate
+    from gyrify.run.simulation import simulate
     from gyrify.store.vtkhdf import write_vtkhdf
 
     with tempfile.TemporaryDirectory() as name:

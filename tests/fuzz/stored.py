@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 
 from gyrify.config import Config
-from gyrify.simulation import simulate
+from gyrify.run.simulation import simulate
 
 TINY = {
     "mesh.n_around": 24,

@@ -7,7 +7,7 @@ from typing import Any
 
 from gyrify.paper.cases import BOTH, EQUAL, SOFT, STIFFNESS, Case
 from gyrify.paper.row import Row
-from gyrify.paper.threshold import STATES
+from gyrify.paper.visible_folds import STATES
 
 GI_BY_STIFFNESS = (1.0, 1.01, 1.1, 1.29, 1.37, 1.42, 1.44, 1.47)
 LABELS = ("smooth", "lissencephaly", "pachygyria", "normal", "normal", *["sinusoidal"] * 3)

@@ -11,12 +11,12 @@ import pytest
 from gyrify.config import Config
 from gyrify.errors import SolveError
 from gyrify.paper import Case
-from gyrify.paper.bench import Bench
 from gyrify.paper.cases import EQUAL, SOFT
 from gyrify.paper.index import Index
+from gyrify.paper.loss_of_stability import FILE, stability_thresholds
 from gyrify.paper.reading import Mechanics, Reading, point_of
 from gyrify.paper.reproduce import known_rows
-from gyrify.paper.stability import FILE, stability_thresholds
+from gyrify.paper.simulations import Bench
 from gyrify.study import StudyProgress, read_results
 
 BASE = Config().with_overrides(
@@ -82,7 +82,7 @@ def test_loss_of_stability_is_told_and_kept(
             raise answer
         return answer
 
-    monkeypatch.setattr("gyrify.paper.stability.critical_growth", critical)
+    monkeypatch.setattr("gyrify.paper.loss_of_stability.critical_growth", critical)
     with Bench(tmp_path) as bench:
         for _ in range(2):
             assert stability_thresholds(bench, [POINTS[0].config], [2.5]) == [words]

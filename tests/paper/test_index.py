@@ -12,9 +12,9 @@ from gyrify.config import Config
 from gyrify.errors import ConfigError
 from gyrify.metrics import gyrification_index
 from gyrify.paper import Case
-from gyrify.paper.bench import Bench
 from gyrify.paper.index import INDICES, PEN, STANDARD_INDEX, Index, picture_index, require_gi
 from gyrify.paper.reading import Mechanics, Reading, point_of
+from gyrify.paper.simulations import Bench
 
 COARSE = {
     "mesh.n_around": 96,

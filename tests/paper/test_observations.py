@@ -9,7 +9,7 @@ from made_up import perfect, spoilt
 
 from gyrify.paper import Case, observations
 from gyrify.paper.cases import EQUAL, SOFT, STIFFNESS, all_cases
-from gyrify.paper.verdict import Verdict
+from gyrify.paper.checks import Verdict
 
 THIRD, SOFTEST, HALF = (Case(stiffness) for stiffness in STIFFNESS[:3])
 RULES = {observation.id: observation for observation in observations()}

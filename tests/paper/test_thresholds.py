@@ -6,7 +6,7 @@ import pytest
 
 from gyrify.paper import Case, Row
 from gyrify.paper.cases import EQUAL, PAPER_THRESHOLD, SOFT, threshold_ends
-from gyrify.paper.threshold import (
+from gyrify.paper.visible_folds import (
     VISIBLE,
     next_states,
     next_thresholds,

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from gyrify.config import Config
 from gyrify.errors import SolveError
-from gyrify.simulation import Progress, new_run
+from gyrify.run.simulation import Progress, new_run
 from gyrify.store import History
 
 KINDS = {

@@ -7,9 +7,9 @@ import pytest
 
 import gyrify
 from gyrify.errors import ConfigError
-from gyrify.reevaluation import reevaluated
 from gyrify.report.plot.dispersion import annulus_of, dispersion
-from gyrify.summary import metrics_rows
+from gyrify.run.reevaluation import reevaluated
+from gyrify.run.summary import metrics_rows
 from gyrify.theory import critical_growth_time, lowest_eigenvalue
 
 TIME = "growth time [model units]"

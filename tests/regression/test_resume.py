@@ -13,7 +13,7 @@ import pytest
 
 from gyrify.config import Config
 from gyrify.errors import HistoryError
-from gyrify.simulation import Progress, resume, simulate
+from gyrify.run.simulation import Progress, resume, simulate
 from gyrify.store import History
 
 ROOT = Path(__file__).parents[2]

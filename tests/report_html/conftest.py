@@ -16,7 +16,7 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
-from gyrify.report.html.study import study_page
+from gyrify.report.html.page_of_study import study_page
 from gyrify.study import Study, run_study
 
 BASE = {

@@ -9,7 +9,7 @@ import pytest
 
 from gyrify.config import Config
 from gyrify.report.html import run_page
-from gyrify.simulation import simulate
+from gyrify.run.simulation import simulate
 from gyrify.store import History
 
 KINDS = {

@@ -8,8 +8,8 @@ import pytest
 
 from gyrify.config import Config
 from gyrify.report.html import describe, run_page
-from gyrify.report.html.page import safe_json
-from gyrify.simulation import simulate
+from gyrify.report.html.assembly import safe_json
+from gyrify.run.simulation import simulate
 from gyrify.store import History
 
 NAME = '<script>window.ran = 1</script>"><img src=x onerror="window.ran = 1">'

@@ -18,8 +18,8 @@ from gyrify.errors import HistoryError
 from gyrify.report.html import page, run_page, write_page
 from gyrify.report.html.frames import frames_of, packed_frames, spread
 from gyrify.report.html.packing import Payload, coded
-from gyrify.report.html.shown import SHOWN, colour_range, describe
-from gyrify.simulation import simulate
+from gyrify.report.html.shown_fields import SHOWN, colour_range, describe
+from gyrify.run.simulation import simulate
 from gyrify.store import History
 
 HOME = files("gyrify.report.html")

@@ -9,7 +9,7 @@ import pytest
 
 from gyrify.cli.app import main
 from gyrify.config import Config
-from gyrify.simulation import simulate
+from gyrify.run.simulation import simulate
 
 
 @pytest.fixture(scope="module")

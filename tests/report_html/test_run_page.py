@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from gyrify.report.html import run_page
-from gyrify.report.html.shown import SHOWN, scalar
+from gyrify.report.html.shown_fields import SHOWN, scalar
 from gyrify.store import History
 from gyrify.store.fields import fields
 
@@ -211,7 +211,7 @@ def test_dark_and_light(browser, text: str) -> None:
 
 
 def test_numbers_and_settings_are_those_of_the_run(opened, folded: History) -> None:
-    from gyrify.summary import summarise
+    from gyrify.run.summary import summarise
 
     summary = summarise(folded)
     numbers = opened.page.locator(".numbers").inner_text()

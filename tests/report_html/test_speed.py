@@ -6,7 +6,7 @@ import pytest
 
 from gyrify.config import Config
 from gyrify.report.html import run_page
-from gyrify.simulation import simulate
+from gyrify.run.simulation import simulate
 
 # Draws frame after frame as fast as it can, and waits each time until the pixels are there.
 FRAMES_PER_SECOND = """() => {

@@ -11,7 +11,7 @@ import pytest
 
 from gyrify.cli.app import main
 from gyrify.config import Config
-from gyrify.report.html.study import study_page
+from gyrify.report.html.page_of_study import study_page
 from gyrify.report.html.study_runs import last_frame
 from gyrify.store.fields import fields
 from gyrify.study import Study, final_state, read_results, run_study

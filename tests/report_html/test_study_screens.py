@@ -8,7 +8,7 @@ import re
 import pytest
 from screens import IS_DRAWN, SCREENS
 
-from gyrify.report.html.page import safe_json
+from gyrify.report.html.assembly import safe_json
 
 
 @pytest.fixture(scope="module")

@@ -13,9 +13,9 @@ from random_runs import STOPPED, name_of
 
 from gyrify import Config, History, Study, run_study
 from gyrify.cli import main
-from gyrify.onset import detector
-from gyrify.outputs import folded_picture
 from gyrify.report.figures import save_figure
+from gyrify.report.outputs import folded_picture
+from gyrify.run.onset import detector
 from gyrify.solve import branch
 from gyrify.solve.increment import Increments
 from gyrify.solve.problem import State

@@ -33,7 +33,7 @@ STARVED = """
 import resource, sys
 from gyrify import Config, simulate
 from gyrify.cli import main
-from gyrify.outputs import write_outputs
+from gyrify.report.outputs import write_outputs
 tiny = {"mesh.n_around": 48, "mesh.n_layers": 6, "mesh.n_cortex_layers": 2, "solver.increments": 2}
 write_outputs(simulate(Config.preset("reference-slice").with_overrides(tiny)), sys.argv[3])
 pages = int(open("/proc/self/statm").read().split()[0])
@@ -123,7 +123,7 @@ def test_memory_that_runs_out_while_preparing_is_on_record(
         raise MemoryError
 
     with monkeypatch.context() as patch:
-        patch.setattr("gyrify.model.Slice.compile", no_memory)
+        patch.setattr("gyrify.model.slice.Slice.compile", no_memory)
         file = tmp_path / "config.toml"
         file.write_text(tiny.to_toml())
         assert main(["run", str(file), "--out", str(tmp_path / "run"), "--quiet"]) == 1

@@ -10,7 +10,7 @@ import pytest
 
 from gyrify import Config, simulate
 from gyrify.errors import SolveError
-from gyrify.reevaluation import Increment
+from gyrify.run.reevaluation import Increment
 from gyrify.solve.increment import Increments
 from gyrify.solve.problem import State
 from gyrify.solve.result import Result, Solution

@@ -19,7 +19,7 @@ import pytest
 from gyrify.cli import main
 from gyrify.config import Config
 from gyrify.errors import HistoryError
-from gyrify.simulation import simulate
+from gyrify.run.simulation import simulate
 from gyrify.store import History, disks, soft_lock
 from gyrify.store.journal import Journal
 from gyrify.store.lock import SOFT_LOCK, run_lock

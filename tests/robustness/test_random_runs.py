@@ -12,7 +12,7 @@ from random_configurations import RANGES, SPACES, configuration, draw
 from random_runs import Record, campaign, lost, name_of, outcome, read
 
 from gyrify import Config
-from gyrify.config.checks import faults
+from gyrify.config.cross_checks import faults
 from gyrify.solve.result import Result
 
 # Chunks of the campaign of the reliability page, so that two processes share the work. Numbers 10 to 14 are

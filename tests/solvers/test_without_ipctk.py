@@ -14,8 +14,8 @@ import pytest
 from packaging.requirements import Requirement
 
 from gyrify import Config, History, HistoryError, SolveError, resume, simulate
-from gyrify import run as runs
-from gyrify.energy.collision import contact_library
+from gyrify.energy.contact_libraries import contact_library
+from gyrify.run import running as runs
 
 HAS_IPCTK = contact_library() == "ipctk"
 SMALL = {"mesh.n_around": 96, "mesh.n_layers": 10, "mesh.n_cortex_layers": 4, "solver.increments": 40}
@@ -76,7 +76,7 @@ def installed(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
 
     def choose(name: str) -> None:
         monkeypatch.setattr(runs, "contact_library", lambda: name)
-        monkeypatch.setattr("gyrify.model.Slice.contact_library", name)
+        monkeypatch.setattr("gyrify.model.slice.Slice.contact_library", name)
 
     return choose
 

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from gyrify.base.pool import Watcher, each
 from gyrify.errors import GyrifyError
-from gyrify.pool import Watcher, each
 
 
 def triple(item: int, watch: Watcher) -> int:
@@ -64,7 +64,7 @@ def test_closing_ends_processes_at_a_safe_place(tmp_path: Path) -> None:
 
 
 def test_processes_that_cannot_begin_are_told_from_items_that_kill(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("gyrify.pool._begin_worker", dies_at_once)
+    monkeypatch.setattr("gyrify.base.pool._begin_worker", dies_at_once)
     with pytest.raises(GyrifyError, match="No process for the runs could be started"):
         list(each(triple, [1, 2], 2, lambda item: item))
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import gyrify
-from gyrify import versions
+from gyrify.base import versions
 
 SOURCE = Path(gyrify.__file__).parent
 # Read on the way to a result without a part in it: how runs are kept, limited, told, and fail.

@@ -45,7 +45,7 @@ def test_a_point_that_was_stored_when_the_signal_came_is_in_the_results(
         write_record(*arguments)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("gyrify.study.book.write_record", stored_and_cut_off)
+    monkeypatch.setattr("gyrify.study.known_points.write_record", stored_and_cut_off)
     with pytest.raises(KeyboardInterrupt):
         run_study(Study.from_toml(file), tmp_path, workers=1)
     assert read_results(tmp_path).num_rows == len(finished(tmp_path)) == 1

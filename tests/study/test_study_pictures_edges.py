@@ -13,7 +13,7 @@ from gyrify import Config, plot, read_results, run_study
 from gyrify.cli import main
 from gyrify.errors import HistoryError
 from gyrify.report import onset_curve as onset_module
-from gyrify.report.html.study import study_page
+from gyrify.report.html.page_of_study import study_page
 from gyrify.report.onset_curve import OnsetCurve, onset_curve
 from gyrify.report.phase_diagram import phase_figure
 from gyrify.report.sensitivity import sensitivity_figure

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from gyrify import scratch
+from gyrify.base import scratch
 
 # Two kinds of one function, as kernels of two elements are: numba keeps both under one name.
 KERNELS = """
-from gyrify.compiled import njit
+from gyrify.base.compiled import njit
 def kernel(n):
     @njit(cache=True)
     def add(x):

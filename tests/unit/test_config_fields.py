@@ -10,7 +10,7 @@ import pytest
 
 from gyrify.config import Config, Contact, Geometry, Growth, Material
 from gyrify.config.reference import page
-from gyrify.config.table import rows
+from gyrify.config.rows import rows
 from gyrify.errors import ConfigError
 
 DEFAULTS: dict[str, Any] = {

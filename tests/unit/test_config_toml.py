@@ -15,8 +15,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gyrify.config import Config, parse_number, preset_about, preset_names
+from gyrify.config.rows import rows
 from gyrify.config.schema import json_schema
-from gyrify.config.table import rows
 from gyrify.errors import ConfigError
 
 REFERENCE_HASH = "70e224fd81e3cc74d9599037b3e4cc1a74211c6ad31661f2af824bd0ccfb02e9"

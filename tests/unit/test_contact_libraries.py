@@ -13,8 +13,8 @@ from shapely import LinearRing, LineString
 from test_strip_contact import D_HAT, PERIOD, PHASES, STIFFNESS, N, energy_by_hand, flat, mushrooms
 
 from gyrify.energy import planar
-from gyrify.energy.collision import LibraryName, contact_library
 from gyrify.energy.contact import ContactEnergy, ContactSurface
+from gyrify.energy.contact_libraries import LibraryName, contact_library
 
 OFFSETS = st.floats(-1.0, 1.0, allow_nan=False, width=32)
 

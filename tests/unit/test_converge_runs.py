@@ -13,8 +13,14 @@ from gyrify import Config, History, converge, measure_state, simulate, summarise
 from gyrify.convergence import METRICS, Convergence, runs
 from gyrify.convergence.measured import elastic_energy, measured, visible_time
 from gyrify.errors import ConfigError, SolveError
-from gyrify.report.convergence import Shape, metrics_figure, shapes_figure, slices_figure, write_pictures
-from gyrify.run import Progress
+from gyrify.report.convergence_figures import (
+    Shape,
+    metrics_figure,
+    shapes_figure,
+    slices_figure,
+    write_pictures,
+)
+from gyrify.run.running import Progress
 
 
 @pytest.fixture(scope="module")

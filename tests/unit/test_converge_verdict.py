@@ -7,10 +7,10 @@ import math
 import pytest
 
 from gyrify.config import Config
+from gyrify.convergence.limit import judge
 from gyrify.convergence.plan import contour_nodes, plan, resolution
-from gyrify.convergence.verdict import judge
 from gyrify.errors import ConfigError
-from gyrify.meshing import build_mesh
+from gyrify.model.meshing import build_mesh
 
 
 @pytest.mark.parametrize("order", [0.6, 1.0, 2.0, 3.0])

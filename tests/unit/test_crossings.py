@@ -10,18 +10,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-import gyrify.onset.smooth as smooth
+import gyrify.run.onset.smooth as smooth
 from gyrify.config import Config
 from gyrify.errors import SolveError
 from gyrify.metrics import Measures
 from gyrify.metrics.quantities import MEASURED
-from gyrify.onset.crossing import LowestEigenvalue, Root
-from gyrify.onset.smooth import SmoothBranch, SmoothState
+from gyrify.run.onset.crossing import LowestEigenvalue, Root
+from gyrify.run.onset.smooth import SmoothBranch, SmoothState
 from gyrify.solve.result import Result, Solution, Stats
 from gyrify.solve.stability import Eigenpair
 from gyrify.threshold.critical import _is_beyond
-from gyrify.threshold.result import Crossing, Scanned, main_crossing
-from gyrify.threshold.visible import VisibleScan
+from gyrify.threshold.crossings import Crossing, Scanned, main_crossing
+from gyrify.threshold.visible_scan import VisibleScan
 
 Curve = Callable[[float], float]
 

@@ -7,8 +7,8 @@ import pytest
 
 from gyrify.config import Config
 from gyrify.energy.viscous import DragEnergy, KelvinVoigtEnergy, reduction
-from gyrify.model import Slice
-from gyrify.simulation import simulate
+from gyrify.model.slice import Slice
+from gyrify.run.simulation import simulate
 from gyrify.solve.problem import State
 
 

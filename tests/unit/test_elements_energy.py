@@ -12,9 +12,9 @@ from gyrify.energy.kinematics import Simplices
 from gyrify.energy.total import TotalEnergy
 from gyrify.errors import ConfigError
 from gyrify.mesh import Mesh
+from gyrify.mesh.layered_grid import Layers
 from gyrify.mesh.ring import elliptic_ring
-from gyrify.mesh.sheet import Layers
-from gyrify.tissue import Tissue
+from gyrify.model.tissue import Tissue
 
 ELEMENTS = ["linear", "quadratic", "mean_dilatation"]
 CIRCULAR = {"mesh.n_around": 24, "mesh.n_layers": 4, "mesh.n_cortex_layers": 2, "mesh.node_jitter": 0.02}

@@ -12,7 +12,7 @@ import pytest
 EVALUATE = """
 import numpy as np
 from gyrify import Config
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
 size = {"mesh.n_around": 24, "mesh.n_layers": 4, "mesh.n_cortex_layers": 2}
 problem = Slice(Config.preset("reference-slice").with_overrides(size))
 u = np.zeros_like(problem.mesh.points)

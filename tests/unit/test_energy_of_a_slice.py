@@ -8,7 +8,7 @@ import pytest
 from gyrify.config import Config
 from gyrify.energy.viscous import DragEnergy, KelvinVoigtEnergy
 from gyrify.mesh import GREY, WHITE
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
 from gyrify.physics.neo_hookean import lame_parameters
 from gyrify.solve.problem import State
 

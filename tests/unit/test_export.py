@@ -12,7 +12,7 @@ import pytest
 
 from gyrify.config import Config
 from gyrify.errors import ConfigError, HistoryError
-from gyrify.simulation import simulate
+from gyrify.run.simulation import simulate
 from gyrify.store import History
 from gyrify.store.export import CSV_COLUMNS, export
 from gyrify.store.fields import fields

@@ -14,14 +14,14 @@ from gyrify.cli import main
 from gyrify.config import Config
 from gyrify.errors import ConfigError, HistoryError
 from gyrify.metrics.sulci import sulcal_depth
-from gyrify.notebook import DONE
-from gyrify.simulation import simulate
+from gyrify.report.notebook import DONE
+from gyrify.run.simulation import simulate
+from gyrify.run.summary import measure_state
 from gyrify.store import History
 from gyrify.store.contour_table import COLUMNS, contour_rows
 from gyrify.store.export import export
 from gyrify.store.fields import fields
 from gyrify.store.vtkhdf import write_vtkhdf
-from gyrify.summary import measure_state
 
 KINDS: dict[str, dict[str, object]] = {
     "ring": {},

@@ -10,7 +10,7 @@ import pytest
 from gyrify.config import Config
 from gyrify.config.run_sections import ALL_FIELDS
 from gyrify.errors import HistoryError
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
 from gyrify.physics.isotropic import first_piola
 from gyrify.store import History
 from gyrify.store.fields import (

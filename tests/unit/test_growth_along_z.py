@@ -8,11 +8,11 @@ import pytest
 from gyrify.config import Config
 from gyrify.errors import ConfigError
 from gyrify.mesh import GREY
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
 from gyrify.physics.growth import out_of_plane_growth
-from gyrify.simulation import simulate
+from gyrify.run.simulation import simulate
+from gyrify.run.validity.expected import annulus_of, expected_onset
 from gyrify.theory import Annulus, base_state
-from gyrify.validity.expected import annulus_of, expected_onset
 
 STRETCH = np.array([1.0, 1.3, 2.0])
 

@@ -17,7 +17,7 @@ from gyrify.energy.inversion import ACTIVATION, InversionBarrier, coefficients
 from gyrify.energy.kinematics import ElasticKinematics, Simplices
 from gyrify.energy.total import TotalEnergy
 from gyrify.errors import InvertedCellError
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
 from gyrify.solve.linear import SuperLU
 from gyrify.solve.newton import Criterion, minimise
 from gyrify.solve.result import Result

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numba import njit
 
-from gyrify.energy import lanes
+from gyrify.energy import batch as lanes
 
 
 @njit

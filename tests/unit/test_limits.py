@@ -8,8 +8,8 @@ import pytest
 
 from gyrify.config import Config
 from gyrify.errors import ConfigError, HistoryError, LimitReachedError
-from gyrify.limits import Watch, resident_memory
-from gyrify.simulation import Progress, new_run, resume, simulate
+from gyrify.run.limits import Watch, resident_memory
+from gyrify.run.simulation import Progress, new_run, resume, simulate
 from gyrify.store import History
 
 
@@ -29,8 +29,8 @@ def test_a_limit_is_reached_at_its_value_and_not_before(
     monkeypatch: pytest.MonkeyPatch, now: float, is_reached: bool
 ) -> None:
     clock = [5.0]
-    monkeypatch.setattr("gyrify.limits.time.monotonic", lambda: clock[0])
-    monkeypatch.setattr("gyrify.limits.resident_memory", lambda: now)
+    monkeypatch.setattr("gyrify.run.limits.time.monotonic", lambda: clock[0])
+    monkeypatch.setattr("gyrify.run.limits.resident_memory", lambda: now)
     watches = (Watch(100.0, 0.0), Watch(0.0, 100.0))
     clock[0] += now
     for watch in watches:

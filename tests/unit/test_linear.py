@@ -7,7 +7,7 @@ import pytest
 import scipy.sparse as sp
 
 from gyrify.errors import SolveError
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
 from gyrify.solve.linear import SuperLU, linear_solver
 
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from gyrify.config import Config
-from gyrify.config.checks import MAX_GROWTH, _below
+from gyrify.config.cross_checks import MAX_GROWTH, _below
 from gyrify.errors import ConfigError, MeshError
 from gyrify.mesh.quality import SliverError
-from gyrify.meshing import build_mesh
+from gyrify.model.meshing import build_mesh
 
 DEEP = {"geometry.shape": "strip", "geometry.length": 48.15, "geometry.depth": 65.0}
 REFUSED = {

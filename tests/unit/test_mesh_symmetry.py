@@ -8,11 +8,11 @@ import pytest
 from gyrify import Config, ConfigError, MeshError
 from gyrify.energy.total import FreePattern
 from gyrify.energy.unknowns import Unknowns
+from gyrify.mesh.layered_grid import Layers
 from gyrify.mesh.mesh import Mesh
 from gyrify.mesh.ring import elliptic_ring
-from gyrify.mesh.sheet import Layers
 from gyrify.mesh.symmetry import Mirror, representatives, symmetric_field
-from gyrify.meshing import build_mesh
+from gyrify.model.meshing import build_mesh
 
 SMALL = {"mesh.n_around": 48, "mesh.n_layers": 7, "mesh.n_cortex_layers": 3, "mesh.split": "symmetric"}
 STRIP = {"geometry.shape": "strip", "geometry.length": 40.0 / 3.0}

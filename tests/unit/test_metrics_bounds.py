@@ -13,8 +13,8 @@ from gyrify.metrics import closing_outline, find_folds, measure
 from gyrify.metrics.contour import edge_lengths
 from gyrify.metrics.gyrification import at_least_hull, index_of
 from gyrify.metrics.measure import measure_valid
+from gyrify.run.summary import measure_state, metrics_rows
 from gyrify.store import History
-from gyrify.summary import measure_state, metrics_rows
 
 N = 432
 ANGLE = np.arange(N) * (2 * np.pi / N)

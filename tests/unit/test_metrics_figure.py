@@ -11,7 +11,7 @@ import pytest
 from gyrify.mesh import GREY, WHITE
 from gyrify.report import folded_figure, save_figure
 from gyrify.report.figures import boundary_loops
-from gyrify.report.page import _round_length
+from gyrify.report.layout import _round_length
 
 N = 96
 RADII = (20.0, 30.0, 40.0, 44.0)

@@ -12,8 +12,8 @@ from gyrify import cortical_thickness, gyrification_index, measure
 from gyrify.errors import MeshError
 from gyrify.metrics import closing_outline, find_folds, low_mode_shape, min_gap, sulcal_depth
 from gyrify.metrics.order import ordered_contour
+from gyrify.run.summary import measure_state, metrics_rows
 from gyrify.store import History
-from gyrify.summary import measure_state, metrics_rows
 
 N = 216
 ANGLE = np.arange(N) * (2 * np.pi / N)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from gyrify.metrics import find_folds, measure
+from gyrify.metrics.periodic import strip_sawteeth
 from gyrify.metrics.sawtooth import without_sawteeth
-from gyrify.metrics.strip import strip_sawteeth
 
 
 def ring(height: np.ndarray, stretch: float = 1.2) -> np.ndarray:

@@ -12,7 +12,7 @@ import pytest
 
 from gyrify.config import Config
 from gyrify.errors import GyrifyError
-from gyrify.simulation import Progress, simulate
+from gyrify.run.simulation import Progress, simulate
 from gyrify.store import History
 
 
@@ -52,7 +52,7 @@ def test_html_is_escaped(tiny: Config) -> None:
         if progress.state.index == 2:
             raise ValueError("<script>alert('x')</script>")
 
-    from gyrify.simulation import new_run
+    from gyrify.run.simulation import new_run
 
     with new_run(tiny) as run:
         with pytest.raises(ValueError):
@@ -64,7 +64,7 @@ def test_html_is_escaped(tiny: Config) -> None:
 
 def test_dataframe_has_the_columns_of_the_metrics(history: History) -> None:
     pytest.importorskip("pandas")
-    from gyrify.summary import metrics_rows
+    from gyrify.run.summary import metrics_rows
 
     frame = history.to_dataframe()
     rows = metrics_rows(history)

@@ -8,9 +8,9 @@ import weakref
 import pytest
 
 from gyrify.config import Config
-from gyrify.model import Slice
-from gyrify.onset.search import OnsetSearch
-from gyrify.threshold.stability import StabilityScan
+from gyrify.model.slice import Slice
+from gyrify.run.onset.onset_search import OnsetSearch
+from gyrify.threshold.stability_scan import StabilityScan
 
 
 @pytest.fixture

@@ -7,9 +7,9 @@ import pytest
 
 from gyrify.config import Config
 from gyrify.mesh import Mesh
-from gyrify.meshing import build_mesh
-from gyrify.onset.modes import mean_thickness, wave_of
-from gyrify.onset.relaxation import are_folds_kept
+from gyrify.model.meshing import build_mesh
+from gyrify.run.onset.mode_kinds import mean_thickness, wave_of
+from gyrify.run.onset.relax import are_folds_kept
 
 CIRCLE = {"geometry.shape": "circle", "mesh.n_around": 216, "mesh.node_jitter": 0.0}
 

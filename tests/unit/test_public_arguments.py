@@ -16,7 +16,7 @@ import pytest
 
 import gyrify
 from gyrify import Config, History, Study
-from gyrify.arguments import as_words, native, whole_number
+from gyrify.base.arguments import as_words, native, whole_number
 from gyrify.errors import ConfigError, GyrifyError, HistoryError, MeshError
 
 WHOLE = [np.int8, np.uint8, np.int32, np.int64, np.uint64, np.array]

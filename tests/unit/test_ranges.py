@@ -10,14 +10,14 @@ import pytest
 
 from gyrify.cli import main
 from gyrify.config import Config, preset_names
-from gyrify.meshing import build_mesh
 from gyrify.metrics.contour import edge_lengths
+from gyrify.model.meshing import build_mesh
 from gyrify.paper.cases import all_cases
+from gyrify.run.summary import summarise
+from gyrify.run.validity import config_warnings, run_warnings
+from gyrify.run.validity.lengths import check_lengths
+from gyrify.run.validity.ranges import RANGES, check_ranges, contour_spacing, table
 from gyrify.store import History
-from gyrify.summary import summarise
-from gyrify.validity import config_warnings, run_warnings
-from gyrify.validity.lengths import check_lengths
-from gyrify.validity.ranges import RANGES, check_ranges, contour_spacing, table
 
 PAGE = Path(__file__).parents[2] / "docs" / "limits.md"
 Capture = pytest.CaptureFixture[str]

@@ -11,15 +11,15 @@ import pytest
 
 from gyrify.cli import main
 from gyrify.config import Config, preset_names
+from gyrify.config.rows import rows
 from gyrify.config.schema import json_schema
-from gyrify.config.table import rows
 from gyrify.config.words import decimals
 from gyrify.convergence import METRICS, Family
-from gyrify.convergence.result import Level
+from gyrify.convergence.levels import Level
 from gyrify.errors import ConfigError
 from gyrify.metrics import Measures
-from gyrify.simulation import simulate
-from gyrify.summary import measure_state
+from gyrify.run.simulation import simulate
+from gyrify.run.summary import measure_state
 
 Capture = pytest.CaptureFixture[str]
 RADIUS, PROMINENCE = "metrics.closing_radius", "metrics.gyrus_prominence"

@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 
 from gyrify import Config, critical_growth
-from gyrify.convergence.verdict import judge
+from gyrify.convergence.limit import judge
 from gyrify.paper import stability
 from gyrify.paper.reading import Mechanics
 from gyrify.paper.space import edges
 from gyrify.report.onset_curve import onset_curve
 from gyrify.threshold.critical import _edges
-from gyrify.threshold.result import Crossing, Scanned
+from gyrify.threshold.crossings import Crossing, Scanned
 
 CIRCLE = {
     "geometry.shape": "circle",
@@ -112,7 +112,7 @@ def test_a_map_says_what_it_is_where_no_curve_runs(monkeypatch: pytest.MonkeyPat
 
 
 def test_family_notes_tell_it(tmp_path: Path) -> None:
-    from gyrify.convergence.result import Family, Level
+    from gyrify.convergence.levels import Family, Level
 
     config = Config()
     levels = tuple(

@@ -8,8 +8,8 @@ import pytest
 from gyrify.config import Config
 from gyrify.errors import SolveError
 from gyrify.mesh.waves import dominant_wave, normal_displacement
-from gyrify.model import Slice
-from gyrify.onset.smooth import grown
+from gyrify.model.slice import Slice
+from gyrify.run.onset.smooth import grown
 from gyrify.solve.branch import leave
 from gyrify.solve.linear import linear_solver
 from gyrify.solve.stability import Tangent

@@ -12,9 +12,9 @@ import pytest
 import gyrify
 from gyrify import Config, History
 from gyrify.errors import ConfigError, HistoryError
+from gyrify.run.summary import volume_extremes
 from gyrify.store.export import export
 from gyrify.store.fields import fields
-from gyrify.summary import volume_extremes
 
 WHOLE = [np.int8, np.uint8, np.int32, np.int64, np.uint64, np.array]
 SMALL = {"mesh.n_around": 48, "mesh.n_layers": 6, "mesh.n_cortex_layers": 2, "solver.increments": 4}

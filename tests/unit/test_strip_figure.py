@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gyrify.mesh.sheet import Layers
+from gyrify.mesh.layered_grid import Layers
 from gyrify.mesh.strip import periodic_strip
-from gyrify.metrics.strip import strip_closing_outline
+from gyrify.metrics.periodic import strip_closing_outline
 from gyrify.report import folded_figure
-from gyrify.report.sheet import periodic_sheet
+from gyrify.report.drawn_slice import periodic_sheet
 
 PERIOD = 30.0
 

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gyrify.reevaluation import Increment
+from gyrify.base.versions import versions
+from gyrify.run.reevaluation import Increment
 from gyrify.solve.newton import Criterion
 from gyrify.solve.problem import TICKS, Stepping
 from gyrify.verify.metrics import LATER_KEYS, WORDED, _comparable, _differences
 from gyrify.verify.recheck import _check_balance, _check_contact, _check_forces, _check_volumes, _jumps
-from gyrify.verify.result import Check
-from gyrify.versions import versions
+from gyrify.verify.verification import Check
 
 TOLERANCE = 1e-3
 FINE = Increment(

@@ -12,11 +12,11 @@ import pytest
 import gyrify
 from gyrify.config import Config
 from gyrify.errors import ConfigError
-from gyrify.outputs import write_outputs
-from gyrify.simulation import simulate
+from gyrify.report.outputs import write_outputs
+from gyrify.run.simulation import simulate
+from gyrify.run.summary import measure_state, metrics_rows, summarise
+from gyrify.run.units import unit_of
 from gyrify.store import History
-from gyrify.summary import measure_state, metrics_rows, summarise
-from gyrify.units import unit_of
 from gyrify.verify import verify
 
 

@@ -7,8 +7,8 @@ import pytest
 from validity_cases import PUBLISHED, case
 
 from gyrify.config import Config
+from gyrify.run.validity.resolution import _SmoothMesh, mesh_onset
 from gyrify.threshold import critical_growth
-from gyrify.validity.resolution import _SmoothMesh, mesh_onset
 
 CIRCLE = {"geometry.shape": "circle", "mesh.n_layers": 7, "mesh.n_cortex_layers": 3}
 MESHES = {

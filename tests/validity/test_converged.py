@@ -11,9 +11,9 @@ from validity_cases import COARSE, case
 from gyrify.config import Config
 from gyrify.convergence import judge
 from gyrify.convergence.plan import plan
-from gyrify.simulation import simulate
-from gyrify.summary import summarise
-from gyrify.validity.converged import LIMITS, command, convergence, limit_of, mark
+from gyrify.run.simulation import simulate
+from gyrify.run.summary import summarise
+from gyrify.run.validity.converged import LIMITS, command, convergence, limit_of, mark
 
 MEASURED = Path(__file__).parents[2] / "docs" / "figures" / "convergence.json"
 FAMILIES = (

@@ -9,8 +9,8 @@ import pytest
 from validity_cases import PUBLISHED, case
 
 from gyrify.config import Config
+from gyrify.run.validity.expected import annulus_of, expected_onset
 from gyrify.theory import Bilayer, critical_growth_time, critical_wrinkle, neutral_curve
-from gyrify.validity.expected import annulus_of, expected_onset
 
 RINGS = {
     "reference": {},

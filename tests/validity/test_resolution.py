@@ -11,10 +11,10 @@ from validity_cases import PUBLISHED, THIN, case
 
 from gyrify.cli import main
 from gyrify.config import Config, preset_names
-from gyrify.simulation import simulate
-from gyrify.summary import measure_state
-from gyrify.validity import config_warnings
-from gyrify.validity.resolution import LATE, finer_mesh, mesh_onset, resolution
+from gyrify.run.simulation import simulate
+from gyrify.run.summary import measure_state
+from gyrify.run.validity import config_warnings
+from gyrify.run.validity.resolution import LATE, finer_mesh, mesh_onset, resolution
 
 
 def advised(sentence: str) -> dict[str, Any]:
@@ -90,7 +90,7 @@ def test_a_mesh_is_not_blamed_where_no_folds_are_expected() -> None:
 
 
 def test_a_mesh_that_is_unstable_before_the_tissue_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    import gyrify.validity.resolution as module
+    import gyrify.run.validity.resolution as module
 
     module._mesh_onset.cache_clear()
     monkeypatch.setattr(module._SmoothMesh, "is_stable", lambda *_: False)

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from validity_cases import COARSE, PUBLISHED, case
 
-from gyrify.simulation import simulate
+from gyrify.run.simulation import simulate
+from gyrify.run.summary import summarise
+from gyrify.run.validity.before import config_warnings
+from gyrify.run.validity.collapse import COLLAPSED, collapse
+from gyrify.run.validity.folding import sawtooth, smooth_against_theory
+from gyrify.run.validity.inverted_cells import inversion
+from gyrify.run.validity.locking import locking
 from gyrify.store.history import History
-from gyrify.summary import summarise
-from gyrify.validity.before import config_warnings
-from gyrify.validity.collapse import COLLAPSED, collapse
-from gyrify.validity.folding import sawtooth, smooth_against_theory
-from gyrify.validity.inversion import inversion
-from gyrify.validity.locking import locking
 
 QUICK = {"solver.increments": 25, "stability.detect": False}
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from gyrify.run.summary import summarise, write_metrics, write_summary
 from gyrify.store import History
 from gyrify.store.integrity import digest
-from gyrify.summary import summarise, write_metrics, write_summary
 from gyrify.verify import Verification
 
 

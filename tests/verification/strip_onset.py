@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gyrify.config import Config
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
 from gyrify.solve.equilibrium import find_equilibrium
 from gyrify.solve.newton import Criterion
 from gyrify.solve.result import Result

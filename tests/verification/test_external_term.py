@@ -7,13 +7,13 @@ import pytest
 from forging import write_outputs
 
 import gyrify
-from gyrify import terms
 from gyrify.config import Config
 from gyrify.energy.term import Evaluation, Hessian, Pattern
-from gyrify.reevaluation import reevaluated
+from gyrify.model import terms
+from gyrify.model.terms import TERMS, GrowthStep, TermKind, terms_of
 from gyrify.report.html.series import energy_lines
-from gyrify.simulation import simulate
-from gyrify.terms import TERMS, GrowthStep, TermKind, terms_of
+from gyrify.run.reevaluation import reevaluated
+from gyrify.run.simulation import simulate
 from gyrify.verify import verify
 
 # Stiffness at the end of growth over Young's modulus.

@@ -8,7 +8,7 @@ import pytest
 from oracle import embedded, moduli, neo_hookean
 from scipy.optimize import minimize_scalar
 
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
 from gyrify.physics.growth import growth_stretch, growth_tensor, out_of_plane_growth
 from gyrify.solve.linear import linear_solver
 from gyrify.solve.newton import Criterion, minimise

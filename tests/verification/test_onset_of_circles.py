@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from gyrify.config import Config
-from gyrify.model import Slice
-from gyrify.onset.search import OnsetSearch
-from gyrify.simulation import simulate
+from gyrify.model.slice import Slice
+from gyrify.run.onset.onset_search import OnsetSearch
+from gyrify.run.simulation import simulate
 from gyrify.solve.stability import Onset
 from gyrify.theory import Annulus, critical_growth_time
 

@@ -72,7 +72,7 @@ def test_a_resumed_run_equals_one_that_never_stopped(
 
 def test_an_increment_depends_on_stored_state_alone(folded: History) -> None:
     """The increment after a stored state, solved by a problem that has never seen another one."""
-    from gyrify.model import Slice
+    from gyrify.model.slice import Slice
     from gyrify.solve.quasistatic import grow
 
     number = len(folded) - 2

@@ -38,6 +38,6 @@ def test_stored_residual_of_a_run_with_contact_is_the_largest_force(folded: Hist
     ids=lambda reading: ",".join(map(str, reading.values())),
 )
 def test_stored_residual_is_the_largest_force_in_every_reading(tiny, reading: dict) -> None:
-    from gyrify.simulation import simulate
+    from gyrify.run.simulation import simulate
 
     assert_residuals(simulate(tiny.replace(**reading)))

@@ -11,12 +11,12 @@ from slices import FOLDING
 
 from gyrify.config import Config
 from gyrify.errors import ConfigError, SolveError
-from gyrify.model import Slice
-from gyrify.onset.smooth import IDEAL, grown
-from gyrify.onset.visible import visible_time
-from gyrify.simulation import Progress, resume, simulate
+from gyrify.model.slice import Slice
+from gyrify.run.onset.smooth import IDEAL, grown
+from gyrify.run.onset.visible_time import visible_time
+from gyrify.run.simulation import Progress, resume, simulate
+from gyrify.run.summary import summarise
 from gyrify.store import History
-from gyrify.summary import summarise
 from gyrify.threshold import critical_growth
 
 PERFECT = {**FOLDING, "mesh.node_jitter": 0.0, "dissipation.kind": "none"}

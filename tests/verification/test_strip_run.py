@@ -11,9 +11,9 @@ from test_contact import crossings
 
 from gyrify import simulate
 from gyrify.config import Config
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
+from gyrify.run.summary import measure_state, summarise
 from gyrify.store import History
-from gyrify.summary import measure_state, summarise
 
 STRIP = {
     "geometry.shape": "strip",

@@ -10,7 +10,7 @@ import pytest
 
 from gyrify import Config, gyrification_index, simulate, summarise
 from gyrify.errors import SolveError
-from gyrify.simulation import new_run, resume
+from gyrify.run.simulation import new_run, resume
 from gyrify.solve.problem import State
 from gyrify.store import History
 from gyrify.verify import verify

@@ -11,7 +11,7 @@ from scipy.special import jv, yv
 
 import gyrify.theory.margin as margin_module
 from gyrify.config import Config
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
 from gyrify.theory import (
     Annulus,
     Bilayer,

@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("matplotlib")
 
 from gyrify.theory import Annulus, critical_wrinkle
-from gyrify.theory import figures as draw
+from gyrify.theory import curves as draw
 from gyrify.theory.bilayer import Bilayer
 
 

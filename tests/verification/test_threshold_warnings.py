@@ -11,9 +11,9 @@ from gyrify.cli import main
 from gyrify.config import Config
 from gyrify.theory import Annulus, critical_growth_ratio
 from gyrify.threshold import critical_growth
-from gyrify.threshold.expected import differences, expected_crossings
-from gyrify.threshold.result import Crossing, Scanned
-from gyrify.threshold.stability import StabilityScan
+from gyrify.threshold.crossings import Crossing, Scanned
+from gyrify.threshold.stability_scan import StabilityScan
+from gyrify.threshold.theory_value import differences, expected_crossings
 
 MESH = {"geometry.shape": "circle", "mesh.n_around": 96, "mesh.n_layers": 8, "mesh.n_cortex_layers": 3}
 LOCKED = {**MESH, "material.poisson_ratio": 0.4999}

@@ -13,8 +13,8 @@ from forging import edit_row, failures, flip_a_bit, nudge, write_outputs
 
 from gyrify.config import Config
 from gyrify.errors import HistoryError
-from gyrify.reevaluation import reevaluated
-from gyrify.simulation import simulate
+from gyrify.run.reevaluation import reevaluated
+from gyrify.run.simulation import simulate
 from gyrify.verify import verify
 from gyrify.verify.recheck import ENERGY_BOUND
 
@@ -175,8 +175,8 @@ def test_a_folder_without_a_run_is_refused(tmp_path: Path):
 
 def test_work_of_growth_at_rest_is_the_closed_form(tiny: Config):
     """Held at u = 0 the energy of a grown, blocked cell is J_g kappa/2 (lambda_g^-3 - 1)^2 per area."""
-    from gyrify.model import Slice
-    from gyrify.reevaluation import _growth_power
+    from gyrify.model.slice import Slice
+    from gyrify.run.reevaluation import _growth_power
 
     problem = Slice(tiny.replace(**{"growth.ratio": 1.0}))
     u, t, step = np.zeros((problem.mesh.n_points, 2)), 0.4, 1e-5

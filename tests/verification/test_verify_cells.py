@@ -10,10 +10,10 @@ import pytest
 from forging import edit_row, failures, write_outputs
 
 from gyrify.config import Config
-from gyrify.measuring import point_extremes
-from gyrify.simulation import simulate
+from gyrify.run.measuring import point_extremes
+from gyrify.run.simulation import simulate
+from gyrify.run.summary import volume_extremes
 from gyrify.store import History
-from gyrify.summary import volume_extremes
 from gyrify.verify import verify
 
 

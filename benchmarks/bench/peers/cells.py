@@ -10,7 +10,7 @@ import scipy.sparse as sp
 
 from gyrify.energy.kinematics import ElasticKinematics
 from gyrify.energy.term import Evaluation, FloatArray, IntArray
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
 
 
 @dataclass(frozen=True, eq=False)

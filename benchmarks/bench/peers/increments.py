@@ -20,7 +20,7 @@ from bench.peers.solid import BLOCKS, GrownSolid
 from gyrify.energy.elastic import ElasticEnergy
 from gyrify.energy.kinematics import ElasticKinematics
 from gyrify.energy.term import Evaluation, FloatArray, Hessian, IntArray
-from gyrify.tissue import Tissue
+from gyrify.model.tissue import Tissue
 
 
 class ScikitFemEnergy:

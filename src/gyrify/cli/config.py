@@ -12,7 +12,7 @@ from gyrify.cli.streams import print_json, say, warn
 
 if TYPE_CHECKING:
     from gyrify.config import Config
-    from gyrify.config.table import Row
+    from gyrify.config.rows import Row
 
 app = App(name="config", help="Show, check and describe configurations.")
 DEFAULT = Overrides()
@@ -39,7 +39,7 @@ def show(
     quiet : bool
         Show no progress.
     """
-    from gyrify.config.table import rows
+    from gyrify.config.rows import rows
 
     resolved = overrides.resolve(config)
     if json:
@@ -70,8 +70,8 @@ def check(
     quiet : bool
         Show no progress.
     """
-    from gyrify.meshing import build_mesh
-    from gyrify.validity import config_warnings
+    from gyrify.model.meshing import build_mesh
+    from gyrify.run.validity import config_warnings
 
     resolved = overrides.resolve(config)
     build_mesh(resolved)
@@ -100,7 +100,7 @@ def schema(*, json: bool = True, quiet: bool = False) -> None:  # noqa: ARG001 -
 
 
 def _print_plain(found: list[Row], resolved: Config) -> None:
-    from gyrify.config.table import plain
+    from gyrify.config.rows import plain
 
     shown = [(row.key, f"{plain(row.value)} {row.unit}".strip(), row.origin) for row in found]
     key_width = max(len(key) for key, _, _ in shown)
@@ -115,7 +115,7 @@ def _print_rich(found: list[Row], resolved: Config) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    from gyrify.config.table import plain
+    from gyrify.config.rows import plain
 
     table = Table("field", "value", "unit", "source", caption=f"config_hash {resolved.config_hash}")
     for row in found:

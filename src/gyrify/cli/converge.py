@@ -74,7 +74,7 @@ def converge(
         )
     except KeyboardInterrupt:
         return _tell_interrupted(json)
-    from gyrify.report.convergence import write_pictures
+    from gyrify.report.convergence_figures import write_pictures
 
     write_pictures(found, folder)
     warn(found.warnings)

@@ -8,8 +8,8 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from gyrify.base.signals import ending_signals
 from gyrify.cli.codes import INTERRUPTED
-from gyrify.signals import ending_signals
 
 
 @contextmanager

@@ -19,8 +19,8 @@ from shlex import quote
 from types import FrameType, TracebackType
 from typing import Final, Self
 
+from gyrify.base.signals import ending_signals
 from gyrify.cli.codes import INTERRUPTED
-from gyrify.signals import ending_signals
 
 # Seconds that a run gets to reach a safe place and save; and that a start gets to leave foreign code.
 GRACE: Final = 1.2

@@ -95,7 +95,7 @@ def resolve_config(
     Config
         Checked and complete.
     """
-    from gyrify.config.model import Config, merge, nested
+    from gyrify.config.settings import Config, merge, nested
 
     shortcuts = zip(SHORTCUTS.values(), (stiffness_ratio, growth_ratio, thickness, seed), strict=True)
     pairs = [(key, text) for key, text in shortcuts if text is not None]
@@ -108,7 +108,7 @@ def resolve_config(
 
 def _tables(path: Path | None) -> dict[str, Any]:
     from gyrify.config import toml_text
-    from gyrify.config.model import read_tables
+    from gyrify.config.settings import read_tables
 
     if path == STANDARD_INPUT:
         return toml_text.parse(toml_text.read_standard_input(), "Standard input")

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from gyrify.config import Config
-    from gyrify.paper.bench import Bench
     from gyrify.paper.ensemble import Ensemble
     from gyrify.paper.reading import Reading
     from gyrify.paper.reproduce import Reproduction
     from gyrify.paper.search import Search
+    from gyrify.paper.simulations import Bench
 
 PRESET = "wang2019"
 _MORE_SEEDS = "the best three, with and without fitted constants, with five seeds"
@@ -70,7 +70,7 @@ def paper(
         Show no progress.
     """
     from gyrify.cli.study_progress import progress_of_points
-    from gyrify.paper.bench import Bench
+    from gyrify.paper.simulations import Bench
 
     begun = time.perf_counter()
     base, reading = _reading_of(preset, set_, gi)
@@ -107,8 +107,8 @@ def _interrupted(json: bool) -> int:
 
 
 def _require(workers: int, minutes: float) -> None:
+    from gyrify.base.pool import MAX_WORKERS
     from gyrify.errors import ConfigError
-    from gyrify.pool import MAX_WORKERS
 
     if not 1 <= workers <= MAX_WORKERS:
         raise ConfigError(f"workers = {workers} is out of range (1 to {MAX_WORKERS}).", "Try 2.")
@@ -119,7 +119,7 @@ def _require(workers: int, minutes: float) -> None:
 def _one(bench: Bench, base: Config, reading: Reading, begun: float, seed: int, json: bool) -> int:
     """One reading, one seed."""
     from gyrify.paper.reproduce import reproduce
-    from gyrify.report.paper import write_report
+    from gyrify.report.paper_files import write_report
 
     found = reproduce(bench, base, reading, seed=seed)
     bench.write()
@@ -145,7 +145,7 @@ def _readings(bench: Bench, base: Config, begun: float, minutes: float, json: bo
     """Search, rank, and repeat the best with fresh seeds, which put them in order."""
     from gyrify.paper.ensemble import best_first, repeat
     from gyrify.paper.search import BEST, SearchProgress, search
-    from gyrify.report.paper import write_report
+    from gyrify.report.paper_files import write_report
     from gyrify.report.paper_readings import write_readings
 
     def tell(now: SearchProgress) -> None:

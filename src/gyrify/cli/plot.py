@@ -67,7 +67,7 @@ def plot(
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from gyrify.report.figures import save_figure
     from gyrify.report.plot import plot as draw
-    from gyrify.store.faults import storage_faults
+    from gyrify.store.disk_faults import storage_faults
 
     figure = draw(
         run_folder,

@@ -52,7 +52,7 @@ def _page(folder: Path) -> str:
 
         return run_page(History.load(folder), _name(folder))
     if (folder / "results.parquet").is_file():
-        from gyrify.report.html.study import study_page
+        from gyrify.report.html.page_of_study import study_page
 
         return study_page(folder, _name(folder))
     raise HistoryError(

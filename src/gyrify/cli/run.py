@@ -19,8 +19,8 @@ from gyrify.errors import HistoryError, SolveError
 
 if TYPE_CHECKING:
     from gyrify.config import Config
-    from gyrify.repeat import KnownRun
-    from gyrify.run import Observer, Run
+    from gyrify.run.repeat import KnownRun
+    from gyrify.run.running import Observer, Run
 
 DEFAULT = Overrides()
 _EXIT_CODES = {"completed": COMPLETED, "failed": FAILED, "stopped": STOPPED, "interrupted": INTERRUPTED}
@@ -55,8 +55,8 @@ def run(
     with Interrupts(json) as interrupts:
         resolved = overrides.resolve(config)
         folder = out if out is not None else Path("runs") / resolved.config_hash[:12]
-        from gyrify.repeat import known_run
-        from gyrify.simulation import new_run, stored_run
+        from gyrify.run.repeat import known_run
+        from gyrify.run.simulation import new_run, stored_run
 
         known = None if overwrite else known_run(resolved, folder)
         if known is None:
@@ -90,7 +90,7 @@ def resume(
     """
     with Interrupts(json) as interrupts:
         overrides = {key: read_value(text) for key, text in once(map(split_assignment, set_)).items()}
-        from gyrify.simulation import stored_run
+        from gyrify.run.simulation import stored_run
 
         return _carry_out(stored_run(run_folder, overrides), run_folder, interrupts, json, quiet)
 
@@ -104,8 +104,8 @@ def _carry_out(
     note: str = "",
 ) -> int:
     """Grow, write all derived files whatever the end was, and say what it came to."""
-    from gyrify.outputs import write_outputs, write_state
-    from gyrify.validity import config_warnings
+    from gyrify.report.outputs import write_outputs, write_state
+    from gyrify.run.validity import config_warnings
 
     with _closed(begin) as run:
         interrupts.guard(folder)
@@ -144,7 +144,7 @@ def _closed(begin: AbstractContextManager[Run]) -> Iterator[Run]:
 
 def _tell_done(known: KnownRun, config: Config, json: bool, quiet: bool) -> int:
     """Say what a run that completed before came to; its warnings are told again."""
-    from gyrify.validity import config_warnings
+    from gyrify.run.validity import config_warnings
 
     if not quiet:
         complain(known.note)
@@ -156,7 +156,7 @@ def _tell_done(known: KnownRun, config: Config, json: bool, quiet: bool) -> int:
 
 def _grow(run: Run, interrupts: Interrupts, quiet: bool) -> None:
     """Grow to whatever end; the run keeps a record of it."""
-    from gyrify.progress import progress_observer
+    from gyrify.run.progress import progress_observer
 
     note, shown = _compilation_note(quiet), progress_observer(not quiet, complain)
     with suppress(SolveError, MemoryError, KeyboardInterrupt), shown as observers:

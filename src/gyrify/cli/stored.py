@@ -121,10 +121,10 @@ def _lengths(format: str, **texts: str | None) -> dict[str, float]:
 
 def _measured_again(history: History, path: Path, index: int | None, lengths: dict[str, float]) -> Path:
     """Write the table of metrics of one state, or of every one; the folder keeps its own numbers."""
-    from gyrify.measuring import measured_with, write_metrics
+    from gyrify.run.measuring import measured_with, write_metrics
+    from gyrify.run.validity.lengths import check_lengths
+    from gyrify.store.disk_faults import storage_faults
     from gyrify.store.export import stored_states
-    from gyrify.store.faults import storage_faults
-    from gyrify.validity.lengths import check_lengths
 
     if lengths:
         radius, prominence = lengths.get("closing_radius"), lengths.get("gyrus_prominence")

@@ -54,7 +54,7 @@ def study(
         Show no progress.
     """
     from gyrify.cli.study_progress import progress_of_points
-    from gyrify.study.run import run_study
+    from gyrify.study.driver import run_study
 
     described = _described(file, out)
     folder = Path("studies") / file.stem if out is None else out

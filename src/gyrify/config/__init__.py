@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from gyrify.config.given import ConfigLike, as_config
-from gyrify.config.model import Config
 from gyrify.config.numbers import parse_number
 from gyrify.config.physics_sections import Contact, Dissipation, Geometry, Growth, Material, MeshSettings
 from gyrify.config.preset_files import PresetAbout, preset_about, preset_names
 from gyrify.config.run_sections import Limits, Metrics, Output, Solver, Stability
+from gyrify.config.settings import Config
 
 __all__ = [
     "Config",

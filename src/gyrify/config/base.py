@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic.config import JsonDict
 
-from gyrify.arguments import native
+from gyrify.base.arguments import native
 from gyrify.config.faults import config_error, nearest
 from gyrify.config.numbers import is_fraction, parse_number
 from gyrify.config.words import show

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from gyrify.config.model import Config
 from gyrify.config.preset_files import preset_names
+from gyrify.config.settings import Config
 from gyrify.config.words import shorten
 from gyrify.errors import ConfigError
 

@@ -45,7 +45,7 @@ class PresetAbout:
 
 def preset_names() -> tuple[str, ...]:
     """Return the names of all presets, in alphabetical order."""
-    files = resources.files("gyrify").joinpath("presets").iterdir()
+    files = resources.files("gyrify.config").joinpath("presets").iterdir()
     return tuple(sorted(f.name.removesuffix(".toml") for f in files if f.name.endswith(".toml")))
 
 
@@ -103,4 +103,4 @@ def _text(name: object) -> str:
 
 @cache
 def _read(name: str) -> str:
-    return resources.files("gyrify").joinpath("presets", f"{name}.toml").read_text("utf-8")
+    return resources.files("gyrify.config").joinpath("presets", f"{name}.toml").read_text("utf-8")

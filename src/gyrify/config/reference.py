@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Final
 
 from gyrify.config.faults import sections
-from gyrify.config.model import Config
 from gyrify.config.preset_files import PresetAbout, preset_about, preset_names
-from gyrify.config.table import Row, rows
+from gyrify.config.rows import Row, rows
+from gyrify.config.settings import Config
 from gyrify.config.words import show
 
 INTRODUCTION: Final = """\

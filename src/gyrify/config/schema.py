@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from gyrify.config.model import Config
 from gyrify.config.numbers import NUMBER_PATTERN
 from gyrify.config.preset_files import preset_names
+from gyrify.config.settings import Config
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 _NUMBER_KEYS: Final = ("type", "minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum")

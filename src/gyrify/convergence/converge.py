@@ -6,13 +6,13 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from gyrify.arguments import Pathlike, as_path, as_words, real_number, whole_number
+from gyrify.base.arguments import Pathlike, as_path, as_words, real_number, whole_number
 from gyrify.config import Config, ConfigLike, as_config
+from gyrify.convergence.levels import Convergence, Family, Level
 from gyrify.convergence.plan import SUBJECTS, Subject, plan
-from gyrify.convergence.result import Convergence, Family, Level
 from gyrify.convergence.runs import complete_all
 from gyrify.errors import ConfigError
-from gyrify.store.faults import storage_faults
+from gyrify.store.disk_faults import storage_faults
 
 Teller = Callable[[Level, int, int], None]
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Final
 
 from gyrify.metrics.quantities import Quantity, shown_in
-from gyrify.onset.visible import visible_time
+from gyrify.run.onset.visible_time import visible_time
+from gyrify.run.summary import measure_state
 from gyrify.store.history import History
-from gyrify.summary import measure_state
 
 _UNITS: Final = {"1": "", "growth time": "time"}
 
@@ -70,9 +70,8 @@ def measured(history: History) -> dict[str, float | None]:
     -------
     dict
         By the keys of `METRICS`; None where there is none. ``visible_growth_time`` is the growth time at
-        which the index by the closing passes `gyrify.onset.visible.VISIBLE`, interpolated between increments;
-        ``onset_growth_time`` that at which the tissue's stiffness loses definiteness on the path of the run,
-        often late or never where node jitter unfolds the bifurcation.
+        which the index by the closing passes `gyrify.run.onset.visible_time.VISIBLE`, interpolated between
+        increments; ``onset_growth_time`` that at which the smooth equilibrium loses stability.
     """
     measures, onset = measure_state(history), history.onset
     known: dict[str, float | None] = {

@@ -8,15 +8,15 @@ from functools import partial
 from pathlib import Path
 from typing import Final
 
+from gyrify.base.pool import Watcher, each, go_on
 from gyrify.config import Config
+from gyrify.convergence.levels import Level
 from gyrify.convergence.measured import measured
-from gyrify.convergence.result import Level
 from gyrify.errors import GyrifyError, HistoryError, SolveError
-from gyrify.pool import Watcher, each, go_on
-from gyrify.simulation import new_run, stored_run
+from gyrify.run.simulation import new_run, stored_run
+from gyrify.run.summary import summarise, write_summary
 from gyrify.store.folder import JOURNAL
 from gyrify.store.history import History
-from gyrify.summary import summarise, write_summary
 
 HASH_DIGITS: Final = 12
 

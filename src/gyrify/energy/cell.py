@@ -7,7 +7,7 @@ numba's cache by the next process.
 
 from __future__ import annotations
 
-from gyrify.compiled import njit
+from gyrify.base.compiled import njit
 
 # The functions below write into their last arguments; numba compiles them without annotations.
 # mypy: disable-error-code="no-untyped-def"

@@ -1,16 +1,11 @@
-"""What the contact energy asks of a library that finds pairs and follows paths; and which ones there are."""
+"""What the contact energy asks of a library that finds pairs and follows paths."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final, Literal, Protocol
+from typing import Any, Protocol
 
-from gyrify.energy.images import Polyline
 from gyrify.energy.term import FloatArray, IntArray
-
-LibraryName = Literal["auto", "ipctk", "gyrify"]
-# The kernels of `gyrify.energy.planar` need no other package.
-OWN: Final = "gyrify"
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,48 +57,3 @@ class CollisionContour(Protocol):
     def barrier(self, d_hat: float, stiffness: float) -> Barrier:
         """Barrier with an activation distance [mm] and a stiffness [Pa]."""
         ...
-
-
-def contact_library(name: LibraryName = "auto") -> LibraryName:
-    """Name of the library that is used: ipctk where it is installed, else gyrify's own kernels.
-
-    Raises
-    ------
-    ImportError
-        If a library is asked for that is not installed.
-    """
-    if name == OWN:
-        return OWN
-    try:
-        from gyrify.energy.toolkit import ToolkitContour  # noqa: F401
-    except ImportError:
-        if name != "auto":
-            raise
-        return OWN
-    return "ipctk"
-
-
-def collision_contour(
-    reference: FloatArray, line: Polyline, n_own: int | None, name: LibraryName = "auto"
-) -> CollisionContour:
-    """Contour of a library.
-
-    Parameters
-    ----------
-    reference : (n_vertices, 2) float array
-        Undeformed vertices [mm].
-    line : Polyline
-        Vertices and edges.
-    n_own : int or None
-        Number of vertices of a periodic contour, which come first, its images after them; None where it is
-        not periodic.
-    name : str
-        Library.
-    """
-    if contact_library(name) == OWN:
-        from gyrify.energy.planar import PlanarContour
-
-        return PlanarContour(reference, line.edges, n_own)
-    from gyrify.energy.toolkit import ToolkitContour
-
-    return ToolkitContour(reference, line.edges, n_own)

@@ -15,9 +15,9 @@ from functools import cached_property
 
 import numpy as np
 
-from gyrify.energy.collision import LibraryName, collision_contour
-from gyrify.energy.images import Polyline
+from gyrify.energy.contact_libraries import LibraryName, collision_contour
 from gyrify.energy.neighbourhood import Neighbourhood
+from gyrify.energy.periodic_line import Polyline
 from gyrify.energy.term import Evaluation, FloatArray, Hessian, IntArray, Pattern
 
 # Steps stop short of contact, so that the barrier stays finite.
@@ -39,7 +39,7 @@ class ContactSurface:
         Period in x [mm]: the last point joins the first one period further, and the contour meets its
         images on both sides.
     library : str
-        What searches pairs and follows paths; see `gyrify.energy.collision.contact_library`.
+        What searches pairs and follows paths; see `gyrify.energy.contact_libraries.contact_library`.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Compiled arithmetic of a batch of Kelvin-Voigt dashpots; arrays as in `gyrify.energy.lanes`.
+"""Compiled arithmetic of a batch of Kelvin-Voigt dashpots; arrays as in `gyrify.energy.batch`.
 
 With S the weighed strain rate, f_a = F g_a and s_a = S g_a, the force on node a is F s_a, and the cell matrix
 is w/2 (f_b (x) f_a + (g_a . g_b) F F^T) + (g_a . s_b) I.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gyrify.compiled import njit
+from gyrify.base.compiled import njit
 from gyrify.energy.projection import project_to_psd
 
 # The functions below write into their last arguments; numba compiles them without annotations.

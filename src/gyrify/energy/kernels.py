@@ -10,18 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gyrify.compiled import njit
-from gyrify.energy import cell, dashpot, lanes, projection, tangents
-from gyrify.energy.cell import deform, invert
-from gyrify.energy.dashpot import (
-    add_dashpot_forces,
-    add_dashpot_matrices,
-    project_stresses,
-    squares,
-    subtract_from_strain,
-    weigh,
-)
-from gyrify.energy.lanes import (
+from gyrify.base.compiled import njit
+from gyrify.energy import batch, cell, dashpot, projection, tangents
+from gyrify.energy.batch import (
     LANES,
     add_axial_force,
     add_axial_matrices,
@@ -37,7 +28,16 @@ from gyrify.energy.lanes import (
     store,
     weigh_moduli,
 )
-from gyrify.energy.lanes import invert as invert_all
+from gyrify.energy.batch import invert as invert_all
+from gyrify.energy.cell import deform, invert
+from gyrify.energy.dashpot import (
+    add_dashpot_forces,
+    add_dashpot_matrices,
+    project_stresses,
+    squares,
+    subtract_from_strain,
+    weigh,
+)
 from gyrify.energy.tangents import add_projected
 from gyrify.physics import isotropic, neo_hookean
 
@@ -74,7 +74,7 @@ def elastic_kernels(n_dim: int, n_nodes: int) -> ElasticKernels:
 
 def _sources_digest() -> int:
     """Checksum, not negative, of the source of everything that is compiled into the kernels."""
-    modules = (cell, dashpot, lanes, projection, tangents, isotropic, neo_hookean)
+    modules = (cell, dashpot, batch, projection, tangents, isotropic, neo_hookean)
     return zlib.crc32("".join(map(inspect.getsource, modules)).encode())
 
 

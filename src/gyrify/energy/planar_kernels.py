@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gyrify.compiled import njit
+from gyrify.base.compiled import njit
 
 # The functions below are compiled without annotations.
 # mypy: disable-error-code="no-untyped-def"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gyrify.compiled import njit
+from gyrify.base.compiled import njit
 
 
 @njit(cache=True)

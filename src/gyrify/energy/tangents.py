@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from gyrify.compiled import njit
-from gyrify.energy.lanes import axial_modulus
+from gyrify.base.compiled import njit
+from gyrify.energy.batch import axial_modulus
 from gyrify.energy.projection import project_to_psd
 
 # The functions below write into their last arguments; numba compiles them without annotations.

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from gyrify.errors import MeshError
+from gyrify.mesh.layered_grid import Layers, Sheet, build_sheet
 from gyrify.mesh.mesh import FloatArray, Mesh
 from gyrify.mesh.quality import require_quality
-from gyrify.mesh.sheet import Layers, Sheet, build_sheet
 from gyrify.mesh.symmetry import Mirror, symmetric_field
 
 

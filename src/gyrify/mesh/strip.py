@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from gyrify.errors import MeshError
+from gyrify.mesh.layered_grid import Layers, build_sheet
 from gyrify.mesh.mesh import FloatArray, IntArray, Mesh
 from gyrify.mesh.quality import require_quality
-from gyrify.mesh.sheet import Layers, build_sheet
 from gyrify.mesh.symmetry import Mirror
 
 # The sheet's layers run counter-clockwise, with the outside on the right; in the strip it is on the left.

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Final
 
-from gyrify.arguments import real_number
+from gyrify.base.arguments import real_number
 from gyrify.errors import ConfigError
 
 # Lengths [mm] in whose cube volumes may be counted: a power law with a prefactor of 1 depends on it.

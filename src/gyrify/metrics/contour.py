@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
-from gyrify.arguments import real_number
+from gyrify.base.arguments import real_number
 from gyrify.errors import ConfigError, MeshError
 
 FloatArray = NDArray[np.float64]

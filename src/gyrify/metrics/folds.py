@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
-from gyrify.arguments import whole_number
+from gyrify.base.arguments import whole_number
 from gyrify.metrics.contour import (
     FloatArray,
     following,

@@ -26,7 +26,7 @@ from gyrify.metrics.gyri import GyrusShapes, gyrus_shapes
 from gyrify.metrics.gyrification import closing_length, exposed_length
 from gyrify.metrics.measures import Measures
 from gyrify.metrics.order import notice_unfit, ordered_contour
-from gyrify.metrics.strip import Strip
+from gyrify.metrics.periodic import Strip
 from gyrify.metrics.sulci import depth_below
 from gyrify.metrics.thickness import thickness_at_folds
 
@@ -54,7 +54,7 @@ def measure(
     samples : int
         Points of the arc-length resampling on which gyri are sought, at least 16.
     period : float, optional
-        Period in x [mm] of a strip; see `gyrify.metrics.strip`.
+        Period in x [mm] of a strip; see `gyrify.metrics.periodic`.
 
     Returns
     -------

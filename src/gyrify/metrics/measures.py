@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from gyrify.markup import html_rows
+from gyrify.base.markup import html_rows
 from gyrify.metrics.quantities import MEASURED, flat
 from gyrify.metrics.shape import Shape
 

@@ -7,12 +7,12 @@ from typing import Final
 
 from gyrify.config import Config
 from gyrify.errors import ConfigError
-from gyrify.paper.bench import Bench
 from gyrify.paper.cases import STAGES, Case
 from gyrify.paper.index import INDICES, Index
 from gyrify.paper.reading import Mechanics, Reading, point_of
 from gyrify.paper.row import Row
 from gyrify.paper.scoreboard import Scoreboard, score
+from gyrify.paper.simulations import Bench
 from gyrify.study import Point
 
 _STAGE: Final = {

@@ -6,11 +6,11 @@ from statistics import fmean
 from typing import Final, Literal
 
 from gyrify.config import Config
-from gyrify.paper.bench import Bench
 from gyrify.paper.candidate import Candidate
 from gyrify.paper.cases import EQUAL, SOFT, Case
 from gyrify.paper.index import INDICES, Index
 from gyrify.paper.reading import Mechanics, Reading
+from gyrify.paper.simulations import Bench
 from gyrify.study import Point
 
 Origin = Literal["known", "random", "surrogate", "neighbour"]

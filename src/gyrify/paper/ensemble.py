@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from statistics import fmean, stdev
 
 from gyrify.config import Config
-from gyrify.paper.bench import Bench
 from gyrify.paper.cases import BOTH, Case, ratio_text
 from gyrify.paper.contender import CHOOSING
 from gyrify.paper.reading import Reading
 from gyrify.paper.reproduce import Reproduction, reproduce
 from gyrify.paper.row import Row
-from gyrify.paper.threshold import visible_bracket
+from gyrify.paper.simulations import Bench
+from gyrify.paper.visible_folds import visible_bracket
 
 SEEDS = (0, 1, 2, 3, 4)
 

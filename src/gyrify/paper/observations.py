@@ -9,7 +9,7 @@ from functools import cache
 from importlib import resources
 
 from gyrify.paper import rules_first, rules_numbers, rules_patterns
-from gyrify.paper.verdict import Rows, Verdict
+from gyrify.paper.checks import Rows, Verdict
 
 RuleFunction = Callable[[Rows], Verdict]
 

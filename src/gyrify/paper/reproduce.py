@@ -8,13 +8,19 @@ from typing import Final
 
 from gyrify.config import Config
 from gyrify.errors import GyrifyError
-from gyrify.paper.bench import Bench
 from gyrify.paper.cases import BOTH, EQUAL, SOFT, Case, all_cases
+from gyrify.paper.loss_of_stability import HIGHEST, stability_thresholds
 from gyrify.paper.reading import Reading, point_of
 from gyrify.paper.row import Row
 from gyrify.paper.scoreboard import Scoreboard, score
-from gyrify.paper.stability import HIGHEST, stability_thresholds
-from gyrify.paper.threshold import higher_levels, next_higher, next_states, next_thresholds, visible_bracket
+from gyrify.paper.simulations import Bench
+from gyrify.paper.visible_folds import (
+    higher_levels,
+    next_higher,
+    next_states,
+    next_thresholds,
+    visible_bracket,
+)
 
 # Rows of thresholds, and the stiffness ratio of each.
 _ROWS: Final = {"P12": EQUAL, "P13": SOFT}

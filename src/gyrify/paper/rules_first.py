@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from gyrify.paper import rules_numbers
 from gyrify.paper.cases import STIFFNESS, Case
+from gyrify.paper.checks import Rows, Verdict, shown
 from gyrify.paper.rules_numbers import SAME
 from gyrify.paper.rules_patterns import VERY_THICK, against_standard, labelled, softer_earlier
-from gyrify.paper.verdict import Rows, Verdict, shown
 
 
 def p5(rows: Rows) -> Verdict:

@@ -7,8 +7,8 @@ from typing import Final
 
 from gyrify.metrics import growth_ratio_from_scaling, growth_ratio_from_volumes, length_increase
 from gyrify.paper.cases import EQUAL, SOFT, STIFFNESS, Case
-from gyrify.paper.threshold import threshold_verdict
-from gyrify.paper.verdict import Check, Rows, Verdict, check, shown
+from gyrify.paper.checks import Check, Rows, Verdict, check, shown
+from gyrify.paper.visible_folds import threshold_verdict
 
 GI_AGREES: Final = 0.05
 # A fall of the index that is none, and the least rise that is one.

@@ -7,10 +7,10 @@ from itertools import pairwise
 from typing import Final
 
 from gyrify.paper.cases import BOTH, EQUAL, GROWTH, SOFT, STIFFNESS, THICK, THICKNESS, Case, ratio_text
+from gyrify.paper.checks import Check, Rows, Verdict, check, shown
 from gyrify.paper.row import Row
 from gyrify.paper.rules_numbers import SAME
-from gyrify.paper.threshold import STATES, growth_series, next_states
-from gyrify.paper.verdict import Check, Rows, Verdict, check, shown
+from gyrify.paper.visible_folds import STATES, growth_series, next_states
 
 # Crown over fundus thickness of a cortex that stays within a tenth of its mean, as for phenotypes.
 UNIFORM: Final = 1.222

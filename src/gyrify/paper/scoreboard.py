@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from gyrify.paper.cases import Case
+from gyrify.paper.checks import Rows, Verdict
 from gyrify.paper.observations import observations
-from gyrify.paper.verdict import Rows, Verdict
 
 
 @dataclass(frozen=True)

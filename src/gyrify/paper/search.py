@@ -17,12 +17,12 @@ from typing import Any, Final
 
 import numpy as np
 
+from gyrify.base.extras import require
 from gyrify.config import Config
-from gyrify.extras import require
-from gyrify.paper.bench import Bench
 from gyrify.paper.contender import Contender, Origin
 from gyrify.paper.neighbour import neighbour
 from gyrify.paper.reading import Mechanics
+from gyrify.paper.simulations import Bench
 from gyrify.paper.space import edges, mechanics_of, parameters_of
 from gyrify.study import Point
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from gyrify.metrics import Measures
-from gyrify.phenotype.numbers import shape_numbers
 from gyrify.phenotype.rules import Rules, load_rules
+from gyrify.phenotype.shape_numbers import shape_numbers
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from gyrify.compiled import njit
+from gyrify.base.compiled import njit
 from gyrify.physics.neo_hookean import density, derivatives
 
 FloatArray = NDArray[np.float64]

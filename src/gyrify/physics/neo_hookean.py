@@ -9,7 +9,7 @@ derivatives by the invariants, from which `gyrify.physics.isotropic` forms stres
 
 from __future__ import annotations
 
-from gyrify.compiled import njit
+from gyrify.base.compiled import njit
 
 
 def lame_parameters(young_modulus: float, poisson_ratio: float) -> tuple[float, float]:

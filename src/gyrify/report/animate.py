@@ -9,15 +9,15 @@ from typing import Final, get_args
 
 import numpy as np
 
-from gyrify.arguments import Pathlike, as_path, real_number, whole_number
+from gyrify.base.arguments import Pathlike, as_path, real_number, whole_number
 from gyrify.config.run_sections import OutputField
 from gyrify.errors import ConfigError
 from gyrify.report.animate_files import durations, video_encoder, watched, write_gif, write_mp4
 from gyrify.report.animate_scene import Pixels, Scene
-from gyrify.report.files import whole_file
-from gyrify.report.plot.fields import PAINTS
+from gyrify.report.figure_files import whole_file
+from gyrify.report.plot.field_colours import PAINTS
 from gyrify.report.plot.shown import Run, Shown, run_title, show
-from gyrify.store.faults import storage_faults
+from gyrify.store.disk_faults import storage_faults
 from gyrify.store.fields import CELL_FIELDS
 from gyrify.store.history import History
 

@@ -7,8 +7,8 @@ from itertools import accumulate
 from pathlib import Path
 from typing import Any, Final
 
+from gyrify.base.extras import require
 from gyrify.errors import GyrifyError
-from gyrify.extras import require
 from gyrify.report.animate_scene import Pixels
 
 # Colours of a GIF: enough for smooth edges beside a map of colours, few enough for small files.

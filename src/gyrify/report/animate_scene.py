@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 from gyrify.config.run_sections import OutputField
 from gyrify.mesh import GREY, WHITE
+from gyrify.report.drawn_slice import Sheet
 from gyrify.report.figures import boundary_loops, tissue_path
-from gyrify.report.page import (
+from gyrify.report.layout import (
     COLOURS,
     FONT,
     LINE_MM,
@@ -30,12 +31,11 @@ from gyrify.report.page import (
     page,
     scale_bar,
 )
-from gyrify.report.plot.fields import PAINTS, colour_bar, common_scale, draw_field
+from gyrify.report.plot.field_colours import PAINTS, colour_bar, common_scale, draw_field
 from gyrify.report.plot.folded import tissue_handles
 from gyrify.report.plot.shown import Shown, per_triangle
 from gyrify.report.plot.slices import clamped_line, common_frame
 from gyrify.report.plot.style import POINTS, literal
-from gyrify.report.sheet import Sheet
 from gyrify.store.fields import fields
 
 Pixels = NDArray[np.uint8]

@@ -6,7 +6,7 @@ import os
 import sys
 from pathlib import Path
 
-from gyrify.scratch import scratch_folder
+from gyrify.base.scratch import scratch_folder
 
 
 def prepare_matplotlib() -> None:

@@ -17,9 +17,19 @@ from matplotlib.path import Path as Outline
 from numpy.typing import ArrayLike, NDArray
 
 from gyrify.mesh import GREY, WHITE
-from gyrify.report.files import whole_file
-from gyrify.report.page import COLOURS, LINE_MM, OUTLINE, header, legend, line, page, scale_bar, write_header
-from gyrify.report.sheet import Sheet, closed_sheet, periodic_sheet
+from gyrify.report.drawn_slice import Sheet, closed_sheet, periodic_sheet
+from gyrify.report.figure_files import whole_file
+from gyrify.report.layout import (
+    COLOURS,
+    LINE_MM,
+    OUTLINE,
+    header,
+    legend,
+    line,
+    page,
+    scale_bar,
+    write_header,
+)
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from gyrify.paper.cases import Case
 from gyrify.paper.row import Row
 from gyrify.report.figures import save_figure
-from gyrify.report.page import COLOURS, FONT, MM
+from gyrify.report.layout import COLOURS, FONT, MM
 from gyrify.report.paper_layout import LAYOUTS, Layout
 from gyrify.study import StoredPoint
 

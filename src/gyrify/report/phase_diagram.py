@@ -16,8 +16,8 @@ from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import NullLocator
 from numpy.typing import NDArray
 
+from gyrify.report.layout import MM
 from gyrify.report.onset_curve import OnsetCurve
-from gyrify.report.page import MM
 from gyrify.report.study_data import Cell, axis_label, is_logarithmic
 
 FloatArray = NDArray[np.float64]

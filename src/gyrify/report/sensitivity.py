@@ -11,7 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from gyrify.report.page import MM
+from gyrify.report.layout import MM
 from gyrify.report.study_data import Cell, axis_label
 
 # Okabe and Ito's colours, told apart by every common colour vision; markers tell them apart too.

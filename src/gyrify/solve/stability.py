@@ -70,7 +70,7 @@ class Onset:
     vector : (n_points, n_dim) float array
         The mode, as in `Eigenpair` [1/mm]; where it is largest normal to the contour, it points outwards.
     kind : str
-        What the mode moves; see `gyrify.onset.modes.Wave`.
+        What the mode moves; see `gyrify.run.onset.mode_kinds.Wave`.
     """
 
     growth_time: float
@@ -96,7 +96,7 @@ class StabilityChange:
     n_before, n_after : int
         Negative eigenvalues of the stiffness there.
     kind : str
-        What the mode that changes sides moves; see `gyrify.onset.modes.Wave`.
+        What the mode that changes sides moves; see `gyrify.run.onset.mode_kinds.Wave`.
     mode_number : int
         Waves along the contour.
     wavelength : float

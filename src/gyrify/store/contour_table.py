@@ -11,7 +11,7 @@ import numpy as np
 from gyrify.config.run_sections import OutputField
 from gyrify.mesh import Mesh
 from gyrify.metrics.contour import filled, fitting_radius, offset_outline
-from gyrify.metrics.strip import strip_sulcal_depth
+from gyrify.metrics.periodic import strip_sulcal_depth
 from gyrify.metrics.sulci import depth_below
 from gyrify.solve.types import FloatArray
 from gyrify.store.fields import FieldMaker

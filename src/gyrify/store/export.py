@@ -10,17 +10,17 @@ from typing import Any, Final, Literal, get_args
 
 import numpy as np
 
-from gyrify.arguments import Pathlike, as_path, real_number
+from gyrify.base.arguments import Pathlike, as_path, real_number
+from gyrify.base.extras import require
 from gyrify.config.run_sections import OutputField
 from gyrify.errors import ConfigError, HistoryError
-from gyrify.extras import require
 from gyrify.store.contour_table import write_contour
+from gyrify.store.disk_faults import storage_faults
 from gyrify.store.external import numbered, padded, point_and_cell_data
-from gyrify.store.faults import storage_faults
 from gyrify.store.fields import known_fields
 from gyrify.store.files import fresh
 from gyrify.store.history import History
-from gyrify.store.indices import Index, state_numbers
+from gyrify.store.state_numbers import Index, state_numbers
 from gyrify.store.stl import THICKNESS, write_stl
 from gyrify.store.vtkhdf import written_states
 from gyrify.store.xdmf import write_xdmf

@@ -19,18 +19,18 @@ from typing import Final
 import numpy as np
 from scipy.sparse import csr_array
 
-from gyrify.arguments import as_words
+from gyrify.base.arguments import as_words
 from gyrify.config.faults import nearest
 from gyrify.config.run_sections import ALL_FIELDS, OutputField
 from gyrify.errors import ConfigError
 from gyrify.metrics.contour import distance_to_line
 from gyrify.metrics.curvature import curvature
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
 from gyrify.physics.growth import growth_stretch, growth_tensor, out_of_plane_growth
 from gyrify.physics.neo_hookean import derivatives
 from gyrify.solve.types import FloatArray
 from gyrify.store.history import History
-from gyrify.store.indices import state_number
+from gyrify.store.state_numbers import state_number
 
 # Fields with a value per point; the others have one per cell.
 POINT_FIELDS: Final[frozenset[OutputField]] = frozenset(

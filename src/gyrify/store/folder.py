@@ -10,7 +10,7 @@ from shlex import quote
 from typing import Final
 
 from gyrify.errors import HistoryError
-from gyrify.store.faults import storage_faults
+from gyrify.store.disk_faults import storage_faults
 from gyrify.store.files import fresh, refuse_link
 from gyrify.store.lock import run_lock
 

@@ -7,20 +7,20 @@ from functools import cached_property
 
 import numpy as np
 
-from gyrify.arguments import Pathlike, as_path
+from gyrify.base.arguments import Pathlike, as_path
 from gyrify.config import Config
 from gyrify.errors import HistoryError
 from gyrify.mesh import Mesh
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
 from gyrify.solve.problem import TICKS
 from gyrify.solve.result import Stats
 from gyrify.solve.types import FloatArray
 from gyrify.store.database import RERUN
-from gyrify.store.indices import Index, gathered, state_number
 from gyrify.store.journal import Journal
 from gyrify.store.lock import has_owner
 from gyrify.store.provenance import Provenance
 from gyrify.store.stability_views import StabilityViews
+from gyrify.store.state_numbers import Index, gathered, state_number
 from gyrify.store.views import Views
 
 

@@ -16,7 +16,7 @@ from filelock import FileLock, Timeout
 from gyrify.config.words import shorten
 from gyrify.errors import HistoryError
 from gyrify.store import disks
-from gyrify.store.faults import storage_faults
+from gyrify.store.disk_faults import storage_faults
 from gyrify.store.files import read_facts, refuse_link
 from gyrify.store.soft_lock import SoftLock, is_stale
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gyrify.onset.relaxation import Relaxation
+from gyrify.solve.relaxation import Relaxation
 from gyrify.solve.stability import Onset, StabilityChange
 from gyrify.store.journal import Journal
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gyrify.arguments import real_number
+from gyrify.base.arguments import real_number
 from gyrify.errors import ConfigError
 from gyrify.solve.types import FloatArray
 
@@ -14,6 +15,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
     from pyvista import UnstructuredGrid
+
+
+def _shown() -> Any:
+    """Pictures and tables of a run, by name: they know what a run is, which must not know them."""
+    return import_module("gyrify.report.notebook")
 
 
 class Views:
@@ -58,20 +64,17 @@ class Views:
         **options
             ``compare``, ``at``, ``stress`` and ``width_mm``, as of `gyrify.plot`.
         """
-        from gyrify.notebook import plot
-
-        return plot(self, what, **options)
+        figure: Figure = _shown().plot(self, what, **options)
+        return figure
 
     def to_dataframe(self) -> DataFrame:
-        """Metrics of every state as a pandas table, one row per state; see `gyrify.notebook`."""
-        from gyrify.notebook import to_dataframe
-
-        return to_dataframe(self)  # type: ignore[arg-type]
+        """Metrics of every state as a pandas table, one row per state; see `gyrify.report.notebook`."""
+        return _shown().to_dataframe(self)
 
     def to_pyvista(
         self, index: int = -1, *, time: float | None = None, deformed: bool = True
     ) -> UnstructuredGrid:
-        """A state as a PyVista grid with all its fields; see `gyrify.notebook`.
+        """A state as a PyVista grid with all its fields; see `gyrify.report.notebook`.
 
         Parameters
         ----------
@@ -82,11 +85,7 @@ class Views:
         deformed : bool
             Whether points are current ones, or reference ones that ``displacement`` warps.
         """
-        from gyrify.notebook import to_pyvista
-
-        return to_pyvista(self, index if time is None else self.at(time), deformed=deformed)  # type: ignore[arg-type]
+        return _shown().to_pyvista(self, index if time is None else self.at(time), deformed=deformed)
 
     def _repr_html_(self) -> str:
-        from gyrify.notebook import html
-
-        return html(self)  # type: ignore[arg-type]
+        return str(_shown().html(self))

@@ -31,7 +31,7 @@ from gyrify.mesh import Mesh
 from gyrify.solve.types import FloatArray
 from gyrify.store.chunks import Layout, encoded
 from gyrify.store.derived import sha256_of
-from gyrify.store.faults import storage_faults
+from gyrify.store.disk_faults import storage_faults
 from gyrify.store.fields import CONTOUR_FIELDS, POINT_FIELDS, STATIC_FIELDS, UNITS, FieldMaker, StateFields
 from gyrify.store.files import fresh
 from gyrify.store.history import History

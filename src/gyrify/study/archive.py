@@ -25,9 +25,9 @@ from numpy.typing import NDArray
 from gyrify.config.words import shorten
 from gyrify.errors import HistoryError
 from gyrify.metrics.gyrification import index_of
+from gyrify.run.summary import measure_state
 from gyrify.store.files import fresh, read_facts, refuse_link
 from gyrify.store.history import History
-from gyrify.summary import measure_state
 
 FORMAT: Final = 1
 STATUSES: Final = ("completed", "failed", "stopped", "interrupted")

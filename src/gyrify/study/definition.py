@@ -10,13 +10,13 @@ from pathlib import Path
 from shlex import quote
 from typing import Any, Final, Literal, get_args
 
-from gyrify.arguments import Pathlike, as_path, plain_tables
+from gyrify.base.arguments import Pathlike, as_path, plain_tables
 from gyrify.config import Config, toml_text
-from gyrify.config.model import merge, read_tables
+from gyrify.config.settings import merge, read_tables
 from gyrify.config.words import shorten, show
 from gyrify.errors import ConfigError
-from gyrify.study.checks import require_known
 from gyrify.study.design import Design, read_design
+from gyrify.study.design_checks import require_known
 
 Keep = Literal["final", "all"]
 KEEPS: Final[tuple[Keep, ...]] = get_args(Keep)

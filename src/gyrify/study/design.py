@@ -12,7 +12,7 @@ import numpy as np
 from gyrify.config.faults import nearest
 from gyrify.config.words import show
 from gyrify.errors import ConfigError
-from gyrify.study.checks import require_known, whole_number
+from gyrify.study.design_checks import require_known, whole_number
 from gyrify.study.parameter import Parameter, read_parameter, require_variable
 
 Kind = Literal["grid", "zip", "list", "random", "latin_hypercube"]

@@ -7,10 +7,10 @@ from concurrent.futures import BrokenExecutor, CancelledError, Executor, as_comp
 from contextlib import contextmanager
 from typing import Final
 
+from gyrify.base.extras import require
+from gyrify.base.pool import each
 from gyrify.config import Config
 from gyrify.errors import ConfigError, GyrifyError
-from gyrify.extras import require
-from gyrify.pool import each
 from gyrify.study.solve import Outcome, lost_point
 
 Work = Callable[[Config], Outcome]

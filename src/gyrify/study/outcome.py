@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from gyrify.markup import html_rows
+from gyrify.base.markup import html_rows
+from gyrify.base.versions import solver_version
 from gyrify.study.archive import Record
 from gyrify.study.definition import Point
 from gyrify.study.results import read_results
-from gyrify.study.stored import RUNS, StoredPoint
-from gyrify.versions import solver_version
+from gyrify.study.stored_point import RUNS, StoredPoint
 
 if TYPE_CHECKING:
     from pyarrow import Table

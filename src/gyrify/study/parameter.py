@@ -10,10 +10,10 @@ import numpy as np
 
 from gyrify.config import Config, parse_number
 from gyrify.config.faults import sections
-from gyrify.config.model import NOT_HASHED, nested
+from gyrify.config.settings import NOT_HASHED, nested
 from gyrify.config.words import alternatives, is_number, shorten, show
 from gyrify.errors import ConfigError
-from gyrify.study.checks import require_known, whole_number
+from gyrify.study.design_checks import require_known, whole_number
 
 Scale = Literal["linear", "log"]
 _KNOWN: Final = ("key", "values", "range", "scale", "n")

@@ -8,17 +8,17 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from gyrify.arguments import Pathlike, as_path
+from gyrify.base.arguments import Pathlike, as_path
 from gyrify.config import Config
 from gyrify.config.words import shorten, show
 from gyrify.errors import ConfigError, HistoryError
 from gyrify.metrics.quantities import flat, quantities
 from gyrify.phenotype import classify, grown_thickness
+from gyrify.run.units import unit_of
 from gyrify.store.files import fresh
 from gyrify.study.archive import Record
 from gyrify.study.definition import Point, value_of
 from gyrify.study.parameter import require_variable
-from gyrify.units import unit_of
 
 if TYPE_CHECKING:
     from pyarrow import DataType, Table

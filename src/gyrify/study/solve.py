@@ -5,20 +5,21 @@ from __future__ import annotations
 import time
 from contextlib import suppress
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Any, Final
 
+from gyrify.base.pool import Watcher, go_on
+from gyrify.base.versions import solver_version
 from gyrify.config import Config
 from gyrify.errors import GyrifyError
-from gyrify.pool import Watcher, go_on
-from gyrify.run import Run
-from gyrify.simulation import new_run, stored_run
+from gyrify.run.running import Run
+from gyrify.run.simulation import new_run, stored_run
+from gyrify.run.summary import summarise
 from gyrify.store.folder import JOURNAL
 from gyrify.store.history import History
 from gyrify.study.archive import FinalState, begin_folder, was_begun
 from gyrify.study.definition import KEY_DIGITS
-from gyrify.summary import summarise
-from gyrify.versions import solver_version
 
 _RETRY: Final = "Raise the limit, then run the study again with --retry-failed."
 
@@ -99,7 +100,8 @@ def _in_memory(config: Config, watch: Watcher) -> History:
 
 def _in_folder(config: Config, folder: Path, watch: Watcher) -> History:
     """Begin a run folder, or take it up where the same solver left it; write all its files."""
-    from gyrify.outputs import write_outputs, write_state
+    # By name: pictures know what a study is, which must not know them.
+    outputs = import_module("gyrify.report.outputs")
 
     target = folder / config.config_hash[:KEY_DIGITS]
     if was_begun(target, config.config_hash, solver_version()) and (target / JOURNAL).is_file():
@@ -113,9 +115,9 @@ def _in_folder(config: Config, folder: Path, watch: Watcher) -> History:
             if run.history.status != "completed":
                 _grow(run, watch)
         except KeyboardInterrupt:
-            write_state(run.history, target)
+            outputs.write_state(run.history, target)
             raise
-        write_outputs(run.history, target)
+        outputs.write_outputs(run.history, target)
     return run.history
 
 

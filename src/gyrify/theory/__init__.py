@@ -10,7 +10,7 @@ from gyrify.theory.half_space import (
     neutral_curve,
 )
 from gyrify.theory.margin import Margin, stability_margin
-from gyrify.theory.modes import Mode, SecondVariation, lowest_eigenvalue, surface_limit
+from gyrify.theory.mode_numbers import Mode, SecondVariation, lowest_eigenvalue, surface_limit
 from gyrify.theory.onset import (
     Crossing,
     Crossings,

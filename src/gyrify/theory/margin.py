@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gyrify.theory.annulus import Annulus, BaseState
-from gyrify.theory.modes import SecondVariation, surface_limit
+from gyrify.theory.mode_numbers import SecondVariation, surface_limit
 
 FloatArray = NDArray[np.float64]
 

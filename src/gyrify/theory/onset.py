@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from gyrify.errors import ConfigError
 from gyrify.theory.annulus import Annulus, BaseState, base_state
 from gyrify.theory.margin import scaled, stability_margin
-from gyrify.theory.modes import SecondVariation
+from gyrify.theory.mode_numbers import SecondVariation
 
 FloatArray = NDArray[np.float64]
 Parameter = Literal["growth_ratio", "growth_time", "stiffness_ratio", "cortical_thickness"]

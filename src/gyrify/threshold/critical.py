@@ -7,18 +7,18 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from gyrify.arguments import real_number
+from gyrify.base.arguments import real_number
+from gyrify.base.pool import MAX_WORKERS
 from gyrify.config import Config, ConfigLike, as_config
 from gyrify.errors import ConfigError
-from gyrify.limits import Watch
-from gyrify.pool import MAX_WORKERS
-from gyrify.threshold.expected import differences, expected_crossings
-from gyrify.threshold.parameters import PARAMETERS, Range, scan_values
-from gyrify.threshold.result import Crossing, Definition, Scanned, Threshold, main_crossing
-from gyrify.threshold.stability import StabilityScan
-from gyrify.threshold.visible import VisibleScan
-from gyrify.validity.expected import expected_onset
-from gyrify.validity.locking import locking
+from gyrify.run.limits import Watch
+from gyrify.run.validity.expected import expected_onset
+from gyrify.run.validity.locking import locking
+from gyrify.threshold.crossings import Crossing, Definition, Scanned, Threshold, main_crossing
+from gyrify.threshold.scanned_parameter import PARAMETERS, Range, scan_values
+from gyrify.threshold.stability_scan import StabilityScan
+from gyrify.threshold.theory_value import differences, expected_crossings
+from gyrify.threshold.visible_scan import VisibleScan
 
 # Relative tolerance of a crossing, by definition.
 _FINER = "Repeat it with mesh.refine = 1, and see how far it moves."

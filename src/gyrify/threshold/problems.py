@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from gyrify.config import Config
-from gyrify.model import Slice
-from gyrify.threshold.parameters import configured
+from gyrify.model.slice import Slice
+from gyrify.threshold.scanned_parameter import configured
 
 
 @dataclass

@@ -8,14 +8,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
+from gyrify.base.versions import versions
 from gyrify.config.words import shorten
 from gyrify.errors import HistoryError
-from gyrify.measuring import earlier_rows, point_extremes
+from gyrify.run.measuring import earlier_rows, point_extremes
+from gyrify.run.summary import earlier_summary, summarise
 from gyrify.store.derived import read_metrics
 from gyrify.store.history import History
-from gyrify.summary import earlier_summary, summarise
-from gyrify.verify.result import Check
-from gyrify.versions import versions
+from gyrify.verify.verification import Check
 
 # Largest relative difference between a stored and a recomputed metric.
 METRIC_BOUND: Final = 1e-9

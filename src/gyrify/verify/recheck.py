@@ -11,13 +11,13 @@ import numpy as np
 
 from gyrify.config import Config
 from gyrify.errors import ConfigError, HistoryError
-from gyrify.reevaluation import Increment, reevaluated
+from gyrify.run.reevaluation import Increment, reevaluated
+from gyrify.run.summary import metrics_rows
 from gyrify.store.derived import read_summary, require_digest
 from gyrify.store.folder import JOURNAL
 from gyrify.store.history import History
-from gyrify.summary import metrics_rows
 from gyrify.verify.metrics import check_metrics
-from gyrify.verify.result import Check, Verification
+from gyrify.verify.verification import Check, Verification
 
 # Rounding of a residual over the tolerance that it is compared with.
 RESIDUAL_MARGIN: Final = 1e-3

@@ -7,7 +7,7 @@ from typing import Final
 import matplotlib as mpl
 import numpy as np
 
-from gyrify.report.page import COLOURS
+from gyrify.report.layout import COLOURS
 
 # Viridis for scalars. Of diverging ones, blue to red through white keeps its order for every colour vision.
 _MAPS: Final = {"sequential": "viridis", "diverging": "RdBu_r"}

@@ -6,7 +6,7 @@ from shlex import quote
 from typing import Any
 
 from gyrify.config import Config
-from gyrify.config.table import plain, rows
+from gyrify.config.rows import plain, rows
 from gyrify.config.words import decimals
 from gyrify.metrics.quantities import flat, shown_in
 from gyrify.store.history import History
@@ -22,7 +22,7 @@ def about(history: History, name: str, summary: dict[str, Any]) -> dict[str, Any
     name : str
         What to call it; any text.
     summary : dict
-        From `gyrify.summary.summarise`.
+        From `gyrify.run.summary.summarise`.
 
     Returns
     -------

@@ -11,7 +11,7 @@ import numpy as np
 from gyrify.config.run_sections import OutputField
 from gyrify.mesh import Mesh
 from gyrify.report.html.packing import Coded, Payload, coded
-from gyrify.report.html.shown import SHOWN, ShownField, chosen, describe, scalar
+from gyrify.report.html.shown_fields import SHOWN, ShownField, chosen, describe, scalar
 from gyrify.solve.types import FloatArray
 from gyrify.store.fields import FieldMaker
 from gyrify.store.history import History

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Sequence
 from itertools import accumulate
 from typing import Any, Final
 
-from gyrify.reevaluation import reevaluated
+from gyrify.run.reevaluation import reevaluated
+from gyrify.run.summary import metrics_rows
 from gyrify.store.history import History
-from gyrify.summary import metrics_rows
 
 # 1 Pa mm^2 is 1e-6 mJ per mm out of the plane.
 _MJ_PER_MM: Final = 1e-6

@@ -10,10 +10,10 @@ import numpy as np
 
 from gyrify.errors import HistoryError
 from gyrify.mesh import Mesh
-from gyrify.model import Slice
+from gyrify.model.slice import Slice
 from gyrify.report.html.describe import subtitle
 from gyrify.report.html.frames import ALL, Frames, frames_of, mode_shapes, packed_frames
-from gyrify.report.html.shown import chosen, scalar
+from gyrify.report.html.shown_fields import chosen, scalar
 from gyrify.report.study_data import Row
 from gyrify.solve.types import FloatArray
 from gyrify.store import History

@@ -10,16 +10,16 @@ from typing import Final, Literal, get_args
 
 from matplotlib.figure import Figure
 
-from gyrify.arguments import as_path, real_number
+from gyrify.base.arguments import as_path, real_number
 from gyrify.errors import ConfigError
 from gyrify.report.plot.dispersion import dispersion_plot
 from gyrify.report.plot.energy import energy_plot
 from gyrify.report.plot.folded import folded_plot
-from gyrify.report.plot.indices import gi_plot
+from gyrify.report.plot.index_curves import gi_plot
 from gyrify.report.plot.mode import mode_plot
 from gyrify.report.plot.shown import Run, Shown, show
 from gyrify.report.plot.stress import stress_plot
-from gyrify.report.plot.study import is_study, study_plot
+from gyrify.report.plot.study_slices import is_study, study_plot
 from gyrify.report.plot.style import HUES
 from gyrify.report.plot.thickness import thickness_plot
 from gyrify.store.history import History

@@ -8,7 +8,7 @@ from typing import Final
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from gyrify.report.page import COLOURS, LINE_MM, MARGIN_MM
+from gyrify.report.layout import COLOURS, LINE_MM, MARGIN_MM
 from gyrify.report.plot.shown import Shown
 from gyrify.report.plot.slices import Label, write_label
 from gyrify.report.plot.style import add_axes, letter, new_figure, style_axes

@@ -16,13 +16,13 @@ from scipy.optimize import brentq
 
 from gyrify.config import Config
 from gyrify.errors import ConfigError
+from gyrify.report.drawn_slice import FloatArray
 from gyrify.report.plot.curves import curves, title_of
 from gyrify.report.plot.shown import Shown
 from gyrify.report.plot.style import DASHES, HUES, SINGLE, add_legend, literal
-from gyrify.report.sheet import FloatArray
+from gyrify.run.validity import expected
 from gyrify.theory import Annulus, SecondVariation, base_state, surface_limit
 from gyrify.theory.margin import scaled
-from gyrify.validity import expected
 
 # Growth times that are scanned; modes up to waves of two cortical thicknesses.
 _TIMES: Final = 17

@@ -11,11 +11,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from gyrify.reevaluation import reevaluated
+from gyrify.report.drawn_slice import FloatArray
 from gyrify.report.plot.curves import curves, mark_onset, title_of
 from gyrify.report.plot.shown import Shown
 from gyrify.report.plot.style import DASHES, HUES, SINGLE, TIME_LABEL, add_legend, literal
-from gyrify.report.sheet import FloatArray
+from gyrify.run.reevaluation import reevaluated
 
 # 1 Pa mm² per mm of depth is 1e-6 mJ.
 _MILLIJOULES: Final = 1e-6
@@ -32,7 +32,7 @@ class Budget:
     """Energy per depth [mJ/mm] from the start of growth to each state, (n_states,) each.
 
     ``work`` of growth = ``stored`` in elasticity + ``contact`` + ``external`` in the surroundings +
-    ``dissipated`` + ``lost`` in jumps; see `gyrify.reevaluation`.
+    ``dissipated`` + ``lost`` in jumps; see `gyrify.run.reevaluation`.
     """
 
     time: FloatArray

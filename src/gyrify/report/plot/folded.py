@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from gyrify.report.figures import folded_figure
-from gyrify.report.page import COLOURS, OUTLINE, legend
+from gyrify.report.layout import COLOURS, OUTLINE, legend
 from gyrify.report.plot.shown import Shown
 from gyrify.report.plot.slices import BAR_MM, Label, board, draw_slice, grid_columns
 from gyrify.report.plot.style import DOUBLE, SINGLE

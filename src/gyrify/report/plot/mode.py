@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from gyrify.errors import ConfigError
-from gyrify.report.mode import ModeLines, mode_figure, mode_handles, wave_words
-from gyrify.report.page import legend
+from gyrify.report.drawn_slice import FloatArray, IntArray
+from gyrify.report.layout import legend
+from gyrify.report.mode_figure import ModeLines, mode_figure, mode_handles, wave_words
 from gyrify.report.plot.shown import Shown
 from gyrify.report.plot.slices import BAR_MM, Label, board, grid_columns
 from gyrify.report.plot.style import DOUBLE, SINGLE
-from gyrify.report.sheet import FloatArray, IntArray
 from gyrify.solve.stability import Onset
 
 Arrays = tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray]

@@ -12,10 +12,10 @@ import numpy as np
 
 from gyrify.errors import ConfigError
 from gyrify.metrics import Measures
-from gyrify.report.sheet import FloatArray, Sheet, closed_sheet, periodic_sheet
+from gyrify.report.drawn_slice import FloatArray, Sheet, closed_sheet, periodic_sheet
+from gyrify.run.summary import measure_state
+from gyrify.run.validity.converged import convergence, mark
 from gyrify.store.history import History
-from gyrify.summary import measure_state
-from gyrify.validity.converged import convergence, mark
 
 Run = History | str | os.PathLike[str]
 # More differing parameters than this make a longer name than the folder has.

@@ -11,11 +11,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from gyrify.report.drawn_slice import FloatArray, Sheet
 from gyrify.report.figures import draw_tissues
-from gyrify.report.page import CHARACTERS_PER_MM, COLOURS, LINE_MM, MARGIN_MM, OUTLINE, line, scale_bar
+from gyrify.report.layout import CHARACTERS_PER_MM, COLOURS, LINE_MM, MARGIN_MM, OUTLINE, line, scale_bar
 from gyrify.report.plot.shown import Shown
 from gyrify.report.plot.style import SINGLE, SMALL_POINTS, add_axes, letter, new_figure, write
-from gyrify.report.sheet import FloatArray, Sheet
 
 GAP_MM = 4.0
 BAR_MM = 9.0

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from gyrify.config.run_sections import OutputField
 from gyrify.errors import ConfigError
-from gyrify.report.plot.fields import PAINTS, colour_bar, common_scale, draw_field
+from gyrify.report.plot.field_colours import PAINTS, colour_bar, common_scale, draw_field
 from gyrify.report.plot.shown import Shown, per_triangle
 from gyrify.report.plot.slices import Board, Label, board, draw_slice
 from gyrify.report.plot.style import DOUBLE, SINGLE

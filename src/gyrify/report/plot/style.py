@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from gyrify.report.page import COLOURS, FONT, MM
+from gyrify.report.layout import COLOURS, FONT, MM
 
 # One and two columns of most journals [mm].
 SINGLE: Final = 90.0

@@ -15,9 +15,10 @@ from matplotlib.figure import Figure
 
 from gyrify.mesh import GREY
 from gyrify.metrics.folds import gyri_of, periodic_extrema
+from gyrify.report.drawn_slice import FloatArray
 from gyrify.report.figures import draw_tissues
-from gyrify.report.page import COLOURS, LINE_MM, MARGIN_MM, MM, scale_bar
-from gyrify.report.plot.fields import PAINTS, colour_bar, common_scale, draw_field
+from gyrify.report.layout import COLOURS, LINE_MM, MARGIN_MM, MM, scale_bar
+from gyrify.report.plot.field_colours import PAINTS, colour_bar, common_scale, draw_field
 from gyrify.report.plot.shown import Shown, per_triangle
 from gyrify.report.plot.slices import Label, clamped_line, common_frame, draw_lines, set_frame, write_label
 from gyrify.report.plot.style import (
@@ -29,7 +30,6 @@ from gyrify.report.plot.style import (
     new_figure,
     style_axes,
 )
-from gyrify.report.sheet import FloatArray
 from gyrify.store.fields import fields
 
 _PAINT: Final = PAINTS["thickness"]

@@ -1,0 +1,209 @@
+"""From a configuration to the problem that is solved: tissue, contact, dissipation, increments."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from gyrify.config import Config
+from gyrify.energy.contact import ContactEnergy, ContactSurface
+from gyrify.energy.contact_libraries import LibraryName
+from gyrify.energy.term import FloatArray, IntArray
+from gyrify.energy.total import TotalEnergy
+from gyrify.energy.unknowns import Unknowns
+from gyrify.mesh.symmetry import representatives
+from gyrify.model.meshing import build_mesh
+from gyrify.model.terms import CONSERVATIVE, GrowthStep, terms_of
+from gyrify.model.tissue import Tissue
+from gyrify.solve.linear import linear_solver
+from gyrify.solve.newton import Criterion
+from gyrify.solve.problem import State, Stepping
+from gyrify.solve.quasi_newton import STEPS
+from gyrify.solve.stability import Tangent
+from gyrify.solve.system import System
+
+__all__ = ["Slice", "build_mesh"]
+
+# Barrier stiffness over Young's modulus of the cortex: sulci then rest at about half the activation distance.
+AUTO_BARRIER = 0.1
+# Distance over the shortest edge within which points enter the sparsity pattern together: far enough that few
+# new symbolic analyses are needed, near enough that the factor stays sparse.
+REACH = 3.0
+# Edge of the contour over the shortest undeformed one below which it has collapsed; regular folds stay above.
+# Between the integration points of a quadratic cell no elastic energy resists that, so that contact has to:
+# were its distance to follow the edge further, both would halve until no increment is left.
+COLLAPSED = 0.1
+
+
+class Slice(Tissue):
+    """A growing slice of brain tissue: the problem that `gyrify.solve.quasistatic.grow` solves.
+
+    Parameters
+    ----------
+    config : Config
+        Every number of the run.
+    mesh : Mesh, optional
+        Mesh to use instead of the configured one.
+
+    Attributes
+    ----------
+    contact_library : str
+        What searches pairs and follows paths; see `gyrify.energy.contact_libraries.contact_library`.
+    """
+
+    contact_library: LibraryName = "auto"
+
+    def use_contact_library(self, name: LibraryName) -> None:
+        """Have contact computed by another library."""
+        self.contact_library = name
+        self.__dict__.pop("surface", None)
+
+    def varied(self, config: Config) -> Slice:
+        """Slice of another configuration on the same mesh; what depends on the mesh alone is shared."""
+        other = Slice(config, self.mesh)
+        other.contact_library = self.contact_library
+        shared = (
+            "simplices",
+            "pattern",
+            "patches",
+            "surface",
+            "lumped_area",
+            "free",
+            "free_mass",
+            "unknowns",
+        )
+        other.__dict__.update({name: getattr(self, name) for name in shared})
+        return other
+
+    @cached_property
+    def surface(self) -> ContactSurface:
+        """Outer contour, for contact."""
+        mesh = self.mesh
+        return ContactSurface(mesh.points, mesh.contour, mesh.is_closed, mesh.period, self.contact_library)
+
+    @cached_property
+    def free_mass(self) -> FloatArray:
+        """(n_free,) lumped reference area of each free degree of freedom [mm^2]; all of it for F33."""
+        area = np.where(self.lumped_area > 0.0, self.lumped_area, self.lumped_area.sum())
+        return np.asarray(np.repeat(area, self.mesh.n_dim)[self.free])
+
+    @cached_property
+    def unknowns(self) -> Unknowns | None:
+        """What the free degrees of freedom follow in an increment: half or a quarter of a symmetric mesh."""
+        mirrors = self.mesh.mirrors
+        if not mirrors:
+            return None
+        n_rows, n_dim = self.state_shape
+        source, sign = representatives(mirrors, self.mesh.n_points, n_dim)
+        own = np.arange(source.size, n_rows * n_dim)  # the axial unknown
+        return Unknowns.of(
+            np.concatenate([source, own]), np.concatenate([sign, np.ones(own.size)]), self.free
+        )
+
+    @property
+    def stepping(self) -> Stepping:
+        """Increments and tolerance in physical units."""
+        solver, E = self.config.solver, self.config.material.young_modulus
+        criterion = Criterion(solver.tolerance * E * self.mean_cortical_edge, solver.max_newton)
+        return Stepping(solver.increments, solver.min_increment, criterion)
+
+    @property
+    def is_conservative(self) -> bool:
+        """Whether nothing dissipates, so that an accepted state is an equilibrium of the tissue itself."""
+        dissipation = self.config.dissipation
+        return dissipation.kind == "none" or dissipation.number == 0.0
+
+    @property
+    def shift_mass(self) -> FloatArray | None:
+        """See `gyrify.solve.problem.Problem`: the mass, unless a projection is asked for."""
+        if self.config.solver.regularisation != "shift":
+            return None
+        if self.unknowns is None:
+            return self.free_mass
+        mass = np.zeros(self.unknowns.number.size)
+        mass[self.free] = self.free_mass
+        return self.unknowns.gather_mass(mass)
+
+    @property
+    def old_steps(self) -> int:
+        """See `gyrify.solve.problem.Problem`: without dissipation they might end on a saddle."""
+        return 0 if self.is_conservative else STEPS
+
+    @property
+    def may_jump(self) -> bool:
+        """See `gyrify.solve.problem.Problem`: without dissipation tissue snaps from state to state."""
+        return self.is_conservative
+
+    @property
+    def is_path_kept(self) -> bool:
+        """See `gyrify.solve.problem.Problem`: a bifurcation is to be seen, and nothing unfolds it."""
+        stability = self.config.stability
+        return self.is_conservative and stability.detect and (stability.follow_branch or self.is_perfect)
+
+    @property
+    def is_perfect(self) -> bool:
+        """Whether no imperfection pushes to either side of a bifurcation that breaks the symmetry."""
+        return self.config.mesh.node_jitter == 0.0 or self.unknowns is not None
+
+    @property
+    def barrier_stiffness(self) -> float:
+        """Stiffness of the contact barrier [Pa]."""
+        chosen = self.config.contact.barrier_stiffness
+        return AUTO_BARRIER * self.config.material.young_modulus if chosen == "auto" else float(chosen)
+
+    def compile(self) -> None:
+        """Compile the kernels, or load them from their cache, so that no increment has to wait for it."""
+        start = State.reference(*self.state_shape)
+        total = self.energy(1.0, start, 0.0)
+        total.evaluate(start.u, project_psd=True)
+        total.max_step(start.u, start.u)
+        self.simplices.volume_ratio(start.u)
+
+    def tissue_energy(self, fraction: float, start_u: FloatArray) -> TotalEnergy:
+        """Energy of the body without dissipation, for an increment that starts at a displacement."""
+        step = GrowthStep(self, start_u, fraction, fraction)
+        return TotalEnergy([term for _, term in terms_of(step, CONSERVATIVE)])
+
+    def tangent(self, fraction: float, u: FloatArray, start_u: FloatArray, system: System) -> Tangent:
+        """Exact stiffness of a state, dissipation left out."""
+        evaluations = self.tissue_energy(fraction, start_u).evaluate(u, project_psd=False)
+        return Tangent(evaluations, system, self.free_mass, lambda: self.candidates(u))
+
+    def is_stable(self, fraction: float, u: FloatArray) -> bool:
+        """Whether the energy without dissipation has a positive definite Hessian at a state."""
+        return self.tangent(fraction, u, u, self.system(np.empty((0, 2), dtype=np.int64))).is_stable
+
+    def contact_energy(self, u: FloatArray) -> ContactEnergy:
+        """Contact barrier for an increment that starts at a state u."""
+        contact, T = self.config.contact, self.config.geometry.cortical_thickness
+        spacing = self._spacing(u)
+        d_hat = min(contact.activation_fraction * T, 0.5 * spacing)
+        return ContactEnergy(self.surface, d_hat, self.barrier_stiffness, 0.25 * spacing)
+
+    def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:
+        """See `gyrify.solve.problem.Problem`."""
+        step = GrowthStep(self, start.u, start_fraction, fraction)
+        return TotalEnergy([term for _, term in terms_of(step)])
+
+    def system(self, couplings: IntArray, unknowns: Unknowns | None = None) -> System:
+        """See `gyrify.solve.problem.Problem`; of all free degrees of freedom unless unknowns are given."""
+        pattern = self.pattern.pattern if self.patches is None else self.patches.pattern
+        solver, n_dofs = linear_solver(self.config.solver.linear_solver), int(np.prod(self.state_shape))
+        return System(self.free, n_dofs, self.mesh.n_dim, pattern, solver, couplings, unknowns)
+
+    def increment_system(self, couplings: IntArray) -> System:
+        """See `gyrify.solve.problem.Problem`."""
+        return self.system(couplings, self.unknowns)
+
+    def candidates(self, u: FloatArray) -> IntArray:
+        """Point pairs of the contour that contact may couple before long."""
+        return self.surface.couplings(u, REACH * self._spacing(u))
+
+    def _spacing(self, u: FloatArray) -> float:
+        """Length of the shortest edge of the contour, or that at which it has collapsed [mm]."""
+        return max(self.surface.shortest_edge(u), COLLAPSED * self.surface.shortest_edge(np.zeros_like(u)))
+
+    def is_path_admissible(self, u: FloatArray, u_end: FloatArray) -> bool:
+        """See `gyrify.solve.problem.Problem`."""
+        return not self.config.contact.enabled or self.surface.is_path_collision_free(u, u_end)

@@ -1,0 +1,190 @@
+"""The tissue of a configuration: mesh, growth and stiffness over space, elastic energy."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from gyrify.config import Config
+from gyrify.energy.axial import AxialElasticEnergy, axial_pattern
+from gyrify.energy.elastic import CellPattern, ElasticEnergy
+from gyrify.energy.kinematics import ElasticKinematics, Simplices
+from gyrify.energy.mean_dilatation import MeanDilatationEnergy, PatchPattern
+from gyrify.energy.term import FloatArray, IntArray
+from gyrify.errors import InvertedCellError
+from gyrify.mesh import GREY, Mesh
+from gyrify.model.meshing import build_mesh
+from gyrify.physics.growth import growth_stretch, growth_tensor, out_of_plane_growth
+from gyrify.physics.neo_hookean import lame_parameters
+
+
+class Tissue:
+    """Growing elastic tissue, without contact or dissipation.
+
+    Parameters
+    ----------
+    config : Config
+        Every number of the run.
+    mesh : Mesh, optional
+        Mesh to use instead of the configured one.
+
+    Raises
+    ------
+    InvertedCellError
+        If a cell of the mesh is inverted, anywhere in it.
+
+    Attributes
+    ----------
+    mesh : Mesh
+        The reference mesh.
+    simplices : Simplices
+        Integration points of the cells; fields over space have one value for each of them.
+    rate : (n,) float array
+        Growth rate [1/time].
+    tangential : (n,) bool array
+        Where growth is tangential.
+    mu, kappa : (n,) float array
+        Shear and bulk modulus [Pa].
+    """
+
+    def __init__(self, config: Config, mesh: Mesh | None = None) -> None:
+        self.config = config
+        self.mesh = build_mesh(config) if mesh is None else mesh
+        grey = self.mesh.region[self.simplices.cell] == GREY
+        growth, material = config.growth, config.material
+        self.rate = np.where(grey, growth.rate, growth.rate_white)
+        self.tangential = grey & (growth.law == "tangential")
+        grey_moduli = lame_parameters(material.young_modulus, material.poisson_ratio)
+        white_moduli = lame_parameters(material.young_modulus_white, material.poisson_ratio_white)
+        self.mu, self.kappa = (np.where(grey, g, w) for g, w in zip(grey_moduli, white_moduli, strict=True))
+
+    @property
+    def has_axial_unknown(self) -> bool:
+        """Whether F33 is an unknown: then the state has one row more than the mesh has points."""
+        return self.config.growth.out_of_plane == "generalised"
+
+    @property
+    def state_shape(self) -> tuple[int, int]:
+        """Shape of a state."""
+        return self.mesh.n_points + self.has_axial_unknown, self.mesh.n_dim
+
+    @property
+    def axial_length(self) -> float:
+        """Length L that makes a displacement of the axial unknown: F33 = 1 + w / L [mm]."""
+        return self.config.geometry.drag_length
+
+    @cached_property
+    def simplices(self) -> Simplices:
+        """Integration points and their shape-function gradients."""
+        simplices = Simplices.of(self.mesh.cell_points, self.mesh.cells, self.mesh.n_points)
+        cell = simplices.first_inverted(np.zeros_like(self.mesh.points))
+        if cell is not None:
+            middle = ", ".join(f"{x:.4g}" for x in self.mesh.cell_points[cell].mean(axis=0))
+            raise InvertedCellError(
+                f"Cell {cell} of the mesh, at ({middle}) mm, is inverted; it must be positive everywhere.",
+                "List its corners counter-clockwise; keep nodes between them near the middles of the sides.",
+            )
+        return simplices
+
+    @cached_property
+    def pattern(self) -> CellPattern:
+        """Sparsity of the cells."""
+        if self.has_axial_unknown:
+            return axial_pattern(self.simplices.cells, self.mesh.n_points)
+        return CellPattern(self.simplices.cells, self.mesh.n_dim)
+
+    @cached_property
+    def patches(self) -> PatchPattern | None:
+        """Cells that share a volume ratio, where the element averages it."""
+        if self.config.mesh.element != "mean_dilatation":
+            return None
+        return PatchPattern(self.simplices.cells, self.mesh.patch, self.mesh.n_dim, self.pattern.pattern)
+
+    @cached_property
+    def lumped_area(self) -> FloatArray:
+        """(n_rows,) reference area of each point [mm^2]; none for the axial unknown."""
+        area = np.zeros(self.state_shape[0])
+        area[: self.mesh.n_points] = self.simplices.lumped_volumes
+        return area
+
+    @cached_property
+    def free(self) -> IntArray:
+        """Free degrees of freedom."""
+        is_free = np.ones(self.state_shape, dtype=bool)
+        is_free[self.mesh.clamped] = False
+        if self.has_axial_unknown:
+            is_free[-1] = (True, False)
+        return np.flatnonzero(is_free)
+
+    @cached_property
+    def across(self) -> FloatArray:
+        """(n, n_dim) unit reference direction across the layers at each integration point."""
+        return np.asarray(self.mesh.across[self.simplices.cell])
+
+    @cached_property
+    def mean_cortical_edge(self) -> float:
+        """Mean length of the edges of grey cells [mm]."""
+        corners = self.mesh.cell_points[self.mesh.region == GREY, :3]
+        return float(np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).mean())
+
+    def _out_of_plane(self, stretch: FloatArray) -> FloatArray:
+        growth = self.config.growth
+        return out_of_plane_growth(stretch, growth.out_of_plane, growth.out_of_plane_exponent)
+
+    def kinematics(self, time: float) -> ElasticKinematics:
+        """Cells in their grown state at a growth time."""
+        stretch = growth_stretch(self.rate, time, self.config.growth.stretch)
+        out_of_plane = self._out_of_plane(stretch)
+        return ElasticKinematics.of(
+            self.simplices, growth_tensor(stretch, self.tangential, self.across), out_of_plane
+        )
+
+    def volume_growth(self, time: float) -> FloatArray:
+        """(n,) J_g = det F_g at a growth time, the 33 entry included."""
+        stretch = growth_stretch(self.rate, time, self.config.growth.stretch)
+        out_of_plane = self._out_of_plane(stretch)
+        across = np.where(self.tangential, 1.0, stretch)
+        return np.asarray(stretch ** (self.mesh.n_dim - 1) * across * out_of_plane)
+
+    def axial_stretch(self, u: FloatArray) -> float:
+        """Total out-of-plane stretch F33 of a state: 1 in plane strain."""
+        return 1.0 + float(u[-1, 0]) / self.axial_length if self.has_axial_unknown else 1.0
+
+    def volume_ratio(self, u: FloatArray) -> FloatArray:
+        """(n,) J = det F of a state at the integration points, the 33 entry included."""
+        return self.simplices.volume_ratio(u) * self.axial_stretch(u)
+
+    def least_volume_ratios(self, u: FloatArray, time: float) -> tuple[FloatArray, FloatArray]:
+        """(n_cells,) least J of a state over the whole of each cell, and least J_e = J / J_g at a time.
+
+        Where J varies inside a cell both are bounds from below; see `gyrify.energy.curved`.
+        """
+        J = self.simplices.least_volume_ratio(u) * self.axial_stretch(u)
+        return J, J / self.simplices.largest_of_cells(self.volume_growth(time))
+
+    def volumetric_pressure(self, u: FloatArray, time: float) -> FloatArray | None:
+        """(n,) kappa (mean J_e - 1) [Pa] where the element averages the volume ratio, else None."""
+        if self.patches is None:
+            return None
+        J_g = self.volume_growth(time)
+        weight = self._counted(self.simplices.volumes, J_g)
+        mean = self.patches.sums(weight * self.volume_ratio(u) / J_g) / self.patches.sums(weight)
+        return np.asarray(self.kappa * (mean[self.patches.patch] - 1.0))
+
+    def elastic_energy(self, kinematics: ElasticKinematics) -> ElasticEnergy:
+        """Hyperelastic energy of grown cells."""
+        material = (kinematics, self.mu, self.kappa, self.weight(kinematics), self.pattern)
+        if self.has_axial_unknown:
+            return AxialElasticEnergy(*material, self.axial_length)
+        if self.patches is not None:
+            return MeanDilatationEnergy(*material, self.patches)
+        return ElasticEnergy(*material)
+
+    def weight(self, kinematics: ElasticKinematics) -> FloatArray:
+        """Volume that energy densities are counted by [mm^2]."""
+        return self._counted(kinematics.volumes, kinematics.J_g)
+
+    def _counted(self, volumes: FloatArray, J_g: FloatArray) -> FloatArray:
+        """Grown or reference volume, as the reading wants; grown, so that det F_g is not lost."""
+        return volumes * J_g if self.config.growth.energy_per == "grown" else volumes
