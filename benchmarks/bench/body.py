@@ -51,7 +51,7 @@ class Body:
     ) -> tuple[float, float]:
         """Take steps from a time; elastic and kinetic energy at their end."""
         problem, cells = self.problem, self.problem.simplices
-        rate = problem.rate * problem.config.growth.duration
+        rate = problem.growth.rate * problem.config.growth.duration
         return steps(
             number, start, dt, self.duration, u, v, cells.cells, cells.gradients, cells.volumes, rate,
             problem.mu, problem.kappa, problem.lumped_area, self.is_free, self.damping,
@@ -74,7 +74,7 @@ class Body:
         """
         problem, cells, dt = self.problem, self.problem.simplices, self.duration / number
         u, v = np.zeros(problem.state_shape), np.zeros(problem.state_shape)
-        rate, elastic, kinetic = problem.rate * problem.config.growth.duration, 0.0, 0.0
+        rate, elastic, kinetic = problem.growth.rate * problem.config.growth.duration, 0.0, 0.0
         for step in range(number):
             if step % RENEWED == 0:
                 contact = problem.contact_energy(u)

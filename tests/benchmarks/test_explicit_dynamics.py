@@ -17,7 +17,7 @@ def test_forces_are_those_of_the_energy(problem: Slice, state: np.ndarray) -> No
     time = 350.0
     energy = problem.elastic_energy(problem.kinematics(time)).evaluate(state, 1)
     cells, forces = problem.simplices, np.zeros_like(state)
-    stretch = 1.0 + problem.rate * time
+    stretch = 1.0 + problem.growth.rate * time
     value = add_forces(
         state, cells.cells, cells.gradients, cells.volumes, stretch, problem.mu, problem.kappa, forces
     )

@@ -48,8 +48,8 @@ def test_each_tissue_has_its_growth(tiny: Config) -> None:
     """G_G = 0.002, growth ratio 4: G_W = 0.0005; at time 300, lambda = 1.6 and 1.15."""
     slice_ = problem(tiny, growth__ratio=4.0)
     grey, white = slice_.mesh.region == GREY, slice_.mesh.region == WHITE
-    assert only(slice_.rate[grey]) == 0.002
-    assert only(slice_.rate[white]) == pytest.approx(0.0005)
+    assert only(slice_.growth.rate[grey]) == 0.002
+    assert only(slice_.growth.rate[white]) == pytest.approx(0.0005)
     k = slice_.kinematics(300.0)
     assert only(k.J_g[grey]) == pytest.approx(1.6**3)
     assert only(k.J_g[white]) == pytest.approx(1.15**3)

@@ -44,7 +44,7 @@ def test_energy_at_rest_is_that_of_cells_squeezed_by_their_growth(tiny: Config) 
     s, time = 0.3, 400.0
     config = tiny.with_overrides({"growth.out_of_plane_exponent": s})
     problem = Slice(config)
-    stretch = 1.0 + time * problem.rate
+    stretch = 1.0 + time * problem.growth.rate
     J_g = stretch ** (2.0 + s)
     invariant = 2.0 / stretch**2 + stretch ** (-2.0 * s)
     W = (

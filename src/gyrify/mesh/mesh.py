@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
@@ -44,6 +44,10 @@ class Mesh:
         Whether the contour is a closed loop (a ring) or runs along one period (a strip).
     period : float or None
         Length of the period in x [mm] of a strip, None for a ring.
+    along : (n_points,) float array
+        Position of each point along the layers, 0 to 1 and round again [-]; empty where a mesh has none.
+    depth : (n_points,) float array
+        Position across them: 0 on the clamped side, 1 on the interface, 2 on the contour [-]; likewise.
     mirrors : tuple of Mirror
         Lines across which the mesh is its own mirror image to the last bit, as far as it was built so.
     """
@@ -59,6 +63,8 @@ class Mesh:
     is_closed: bool = True
     period: float | None = None
     mirrors: tuple[Mirror, ...] = ()
+    along: FloatArray = field(default_factory=lambda: np.empty(0))
+    depth: FloatArray = field(default_factory=lambda: np.empty(0))
 
     def __post_init__(self) -> None:
         for array in (
@@ -70,6 +76,8 @@ class Mesh:
             self.clamped,
             self.across,
             self.patch,
+            self.along,
+            self.depth,
         ):
             array.flags.writeable = False
 

@@ -60,6 +60,8 @@ def elliptic_ring(
         across=_normals(sheet, semi_axes, hole_fraction, T),
         patch=sheet.patch,
         mirrors=mirrors,
+        along=sheet.along,
+        depth=sheet.depth,
     )
     lines = np.unique(sheet.depth[[row[0] for row in sheet.rows]])
     thickness = np.diff(np.minimum(lines, 1.0) * white + np.maximum(lines - 1.0, 0.0) * T)

@@ -65,6 +65,8 @@ def periodic_strip(length: float, depth: float, cortical_thickness: float, layer
         is_closed=False,
         period=length,
         mirrors=mirrors,
+        along=sheet.along,
+        depth=sheet.depth,
     )
     # One point of each row: jitter puts the others a little above or below it.
     levels = np.sort(height[[row[0] for row in sheet.rows]])

@@ -14,9 +14,8 @@ from gyrify.energy.mean_dilatation import MeanDilatationEnergy, PatchPattern
 from gyrify.energy.term import FloatArray, IntArray
 from gyrify.errors import InvertedCellError
 from gyrify.mesh import GREY, Mesh
+from gyrify.model.body import growth_of, moduli_of
 from gyrify.model.meshing import build_mesh
-from gyrify.physics.growth import growth_stretch, growth_tensor, out_of_plane_growth
-from gyrify.physics.neo_hookean import lame_parameters
 
 
 class Tissue:
@@ -40,10 +39,8 @@ class Tissue:
         The reference mesh.
     simplices : Simplices
         Integration points of the cells; fields over space have one value for each of them.
-    rate : (n,) float array
-        Growth rate [1/time].
-    tangential : (n,) bool array
-        Where growth is tangential.
+    growth : Growth
+        Growth of each integration point.
     mu, kappa : (n,) float array
         Shear and bulk modulus [Pa].
     """
@@ -52,12 +49,8 @@ class Tissue:
         self.config = config
         self.mesh = build_mesh(config) if mesh is None else mesh
         grey = self.mesh.region[self.simplices.cell] == GREY
-        growth, material = config.growth, config.material
-        self.rate = np.where(grey, growth.rate, growth.rate_white)
-        self.tangential = grey & (growth.law == "tangential")
-        grey_moduli = lame_parameters(material.young_modulus, material.poisson_ratio)
-        white_moduli = lame_parameters(material.young_modulus_white, material.poisson_ratio_white)
-        self.mu, self.kappa = (np.where(grey, g, w) for g, w in zip(grey_moduli, white_moduli, strict=True))
+        self.growth = growth_of(config, grey, self.mesh.across[self.simplices.cell])
+        self.mu, self.kappa = moduli_of(config, grey)
 
     @property
     def has_axial_unknown(self) -> bool:
@@ -118,34 +111,18 @@ class Tissue:
         return np.flatnonzero(is_free)
 
     @cached_property
-    def across(self) -> FloatArray:
-        """(n, n_dim) unit reference direction across the layers at each integration point."""
-        return np.asarray(self.mesh.across[self.simplices.cell])
-
-    @cached_property
     def mean_cortical_edge(self) -> float:
         """Mean length of the edges of grey cells [mm]."""
         corners = self.mesh.cell_points[self.mesh.region == GREY, :3]
         return float(np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).mean())
 
-    def _out_of_plane(self, stretch: FloatArray) -> FloatArray:
-        growth = self.config.growth
-        return out_of_plane_growth(stretch, growth.out_of_plane, growth.out_of_plane_exponent)
-
     def kinematics(self, time: float) -> ElasticKinematics:
         """Cells in their grown state at a growth time."""
-        stretch = growth_stretch(self.rate, time, self.config.growth.stretch)
-        out_of_plane = self._out_of_plane(stretch)
-        return ElasticKinematics.of(
-            self.simplices, growth_tensor(stretch, self.tangential, self.across), out_of_plane
-        )
+        return ElasticKinematics.of(self.simplices, self.growth.tensor(time), self.growth.out_of_plane(time))
 
     def volume_growth(self, time: float) -> FloatArray:
         """(n,) J_g = det F_g at a growth time, the 33 entry included."""
-        stretch = growth_stretch(self.rate, time, self.config.growth.stretch)
-        out_of_plane = self._out_of_plane(stretch)
-        across = np.where(self.tangential, 1.0, stretch)
-        return np.asarray(stretch ** (self.mesh.n_dim - 1) * across * out_of_plane)
+        return self.growth.volume(time)
 
     def axial_stretch(self, u: FloatArray) -> float:
         """Total out-of-plane stretch F33 of a state: 1 in plane strain."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -80,3 +81,62 @@ def out_of_plane_growth(stretch: FloatArray, out_of_plane: OutOfPlane, exponent:
         return np.ones_like(stretch)
     # A power of 1 may differ in the last bit, and results must not.
     return stretch.copy() if exponent == 1.0 else stretch**exponent
+
+
+@dataclass(frozen=True, eq=False)
+class Growth:
+    """Growth over a body: how fast, in which directions and by which law of time each of its points grows.
+
+    Attributes
+    ----------
+    rate : (n,) float array
+        Growth rate [1/time].
+    tangential : (n,) bool array
+        Where growth is tangential; elsewhere it is isotropic.
+    across : (n, n_dim) float array
+        Unit reference direction across the layers.
+    law : {"linear", "exponential"}
+        Law of time; see `growth_stretch`.
+    out_of_plane_rule : {"blocked", "none", "generalised"}
+        As of `out_of_plane_growth`; of no meaning in space.
+    exponent : float
+        s of `out_of_plane_growth`.
+    """
+
+    rate: FloatArray
+    tangential: NDArray[np.bool_]
+    across: FloatArray
+    law: Stretch = "linear"
+    out_of_plane_rule: OutOfPlane = "none"
+    exponent: float = 1.0
+
+    @property
+    def is_isotropic(self) -> bool:
+        """Whether no point grows tangentially."""
+        return not self.tangential.any()
+
+    def stretch(self, time: float) -> FloatArray:
+        """(n,) growth stretch lambda_g at a growth time."""
+        return growth_stretch(self.rate, time, self.law)
+
+    def tensor(self, time: float) -> FloatArray:
+        """(n, n_dim, n_dim) growth tensor F_g, in the plane for a planar body."""
+        return growth_tensor(self.stretch(time), self.tangential, self.across)
+
+    def inverse(self, time: float) -> FloatArray:
+        """(n, n_dim, n_dim) its inverse: the same form with 1 / lambda_g."""
+        return growth_tensor(1.0 / self.stretch(time), self.tangential, self.across)
+
+    def out_of_plane(self, time: float) -> FloatArray:
+        """(n,) entry F_g,33 of a planar body; ones in space."""
+        stretch = self.stretch(time)
+        if self.across.shape[1] == 3:
+            return np.ones_like(stretch)
+        return out_of_plane_growth(stretch, self.out_of_plane_rule, self.exponent)
+
+    def volume(self, time: float) -> FloatArray:
+        """(n,) J_g = det F_g, the 33 entry included."""
+        stretch = self.stretch(time)
+        across = np.where(self.tangential, 1.0, stretch)
+        in_plane = stretch ** (self.across.shape[1] - 1) * across
+        return np.asarray(in_plane * self.out_of_plane(time))

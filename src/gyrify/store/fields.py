@@ -26,7 +26,6 @@ from gyrify.errors import ConfigError
 from gyrify.metrics.contour import distance_to_line
 from gyrify.metrics.curvature import curvature
 from gyrify.model.slice import Slice
-from gyrify.physics.growth import growth_stretch, growth_tensor, out_of_plane_growth
 from gyrify.physics.neo_hookean import derivatives
 from gyrify.solve.types import FloatArray
 from gyrify.store.history import History
@@ -187,7 +186,7 @@ class StateFields:
     @cached_property
     def _stretch(self) -> FloatArray:
         """(n,) growth stretch of the tissue."""
-        return growth_stretch(self._problem.rate, self._time, self._problem.config.growth.stretch)
+        return self._problem.growth.stretch(self._time)
 
     @cached_property
     def _F(self) -> FloatArray:
@@ -205,20 +204,16 @@ class StateFields:
     @cached_property
     def _F_e(self) -> FloatArray:
         """(2, 2, n) elastic deformation gradient in the plane."""
-        problem, F = self._problem, self._F
-        if not problem.tangential.any():
+        growth, F = self._problem.growth, self._F
+        if growth.is_isotropic:
             return np.asarray(F / self._stretch)
-        # The inverse of lambda (I - N N) + N N is the same form with 1 / lambda.
-        across = problem.mesh.across[problem.simplices.cell]
-        inverse = growth_tensor(1.0 / self._stretch, problem.tangential, across)
-        return np.asarray(np.einsum("ikc,ckj->ijc", F, inverse))
+        return np.asarray(np.einsum("ikc,ckj->ijc", F, growth.inverse(self._time)))
 
     @cached_property
     def stress(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Cauchy stress components 11, 22, 33, 12, each (n,) [Pa]; 13 and 23 are zero."""
-        problem, F, growth = self._problem, self._F_e, self._problem.config.growth
-        F_g33 = out_of_plane_growth(self._stretch, growth.out_of_plane, growth.out_of_plane_exponent)
-        f33 = problem.axial_stretch(self._state) / F_g33
+        problem, F = self._problem, self._F_e
+        f33 = problem.axial_stretch(self._state) / problem.growth.out_of_plane(self._time)
         b11, b22 = F[0, 0] ** 2 + F[0, 1] ** 2, F[1, 0] ** 2 + F[1, 1] ** 2
         b33, b12 = f33**2, F[0, 0] * F[1, 0] + F[0, 1] * F[1, 1]
         pressure = problem.volumetric_pressure(self._state, self._time)

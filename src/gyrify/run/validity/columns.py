@@ -19,8 +19,8 @@ from gyrify.energy.element import reference_element
 from gyrify.errors import SolveError
 from gyrify.mesh import GREY
 from gyrify.mesh.layered_grid import Layers, Sheet, build_sheet
-from gyrify.physics.growth import growth_stretch, growth_tensor, out_of_plane_growth
-from gyrify.physics.neo_hookean import derivatives, lame_parameters
+from gyrify.model.body import growth_of, moduli_of
+from gyrify.physics.neo_hookean import derivatives
 from gyrify.run.validity.bands import Bands
 
 if TYPE_CHECKING:
@@ -61,16 +61,11 @@ class MeshColumns:
         self._volumes = (np.abs(np.linalg.det(mapping)) * weights).ravel()
         self._cell = np.repeat(np.arange(len(sheet.cells)), weights.size)
         self._turn = turn[self._cell]
-        self._across = self._outwards(along + self._image)[self._cell]
         grey = sheet.region[self._cell] == GREY
-        growth, material = config.growth, config.material
-        self._rate = np.where(grey, growth.rate, growth.rate_white)
-        self._tangential = grey & (growth.law == "tangential")
-        stiff = lame_parameters(material.young_modulus, material.poisson_ratio)
-        soft = lame_parameters(material.young_modulus_white, material.poisson_ratio_white)
+        self._growth = growth_of(config, grey, self._outwards(along + self._image)[self._cell])
+        self._mu, self._kappa = moduli_of(config, grey)
         # What the mesh adds to the guess, as far as it is known from another growth time.
         self._correction = np.zeros((sheet.depth.size, 2))
-        self._mu, self._kappa = (np.where(grey, g, w) for g, w in zip(stiff, soft, strict=True))
 
     @cached_property
     def rest(self) -> FloatArray:
@@ -229,15 +224,12 @@ class MeshColumns:
 
     def _grown(self, time: float, axial_stretch: float) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Gradients of displacements (n, 4, n_unknowns), F_g^-1, and (f33, weight) at a growth time."""
-        growth = self._config.growth
-        stretch = growth_stretch(self._rate, time, growth.stretch)
-        F_g = growth_tensor(stretch, self._tangential, self._across)
-        F_g33 = out_of_plane_growth(stretch, growth.out_of_plane, growth.out_of_plane_exponent)
+        F_g, F_g33 = self._growth.tensor(time), self._growth.out_of_plane(time)
         inverse = np.linalg.inv(F_g)
         slopes = self._gradients @ inverse
         B = np.einsum("caik,caj->cijak", self._turn, slopes).reshape(len(slopes), 4, -1)
         J_g = np.linalg.det(F_g) * F_g33
-        weight = self._volumes * (J_g if growth.energy_per == "grown" else 1.0)
+        weight = self._volumes * (J_g if self._config.growth.energy_per == "grown" else 1.0)
         return B, np.asarray(inverse, dtype=np.float64), np.stack([axial_stretch / F_g33, weight])
 
     def _evaluate(
