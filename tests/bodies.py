@@ -52,7 +52,7 @@ def elastic(points, cells, F_g=None, F_g33=None, mu=MU, kappa=KAPPA) -> ElasticE
     """Elastic term per grown volume."""
     k, n = kinematics(points, cells, F_g, F_g33), cells.shape[0]
     pattern = CellPattern(cells, points.shape[1])
-    return ElasticEnergy(k, np.full(n, mu), np.full(n, kappa), k.volumes * k.J_g, pattern)
+    return ElasticEnergy(k, np.stack([np.full(n, mu), np.full(n, kappa)]), k.volumes * k.J_g, pattern)
 
 
 def kelvin_voigt(points, cells, previous_strain, F_g=None, F_g33=None, coefficient=5.0) -> KelvinVoigtEnergy:

@@ -41,7 +41,7 @@ class Body:
     def of(problem: Slice) -> Body:
         """Body that is loaded within `CROSSINGS`."""
         config = problem.config
-        crossing = max(config.geometry.semi_axes) / np.sqrt(problem.mu.max())
+        crossing = max(config.geometry.semi_axes) / np.sqrt(problem.parameters[0].max())
         duration = CROSSINGS * crossing
         drag = config.dissipation.number * config.material.young_modulus / config.geometry.drag_length**2
         return Body(problem, duration, drag * duration)
@@ -54,7 +54,7 @@ class Body:
         rate = problem.growth.rate * problem.config.growth.duration
         return steps(
             number, start, dt, self.duration, u, v, cells.cells, cells.gradients, cells.volumes, rate,
-            problem.mu, problem.kappa, problem.lumped_area, self.is_free, self.damping,
+            problem.parameters[0], problem.bulk_modulus, problem.lumped_area, self.is_free, self.damping,
         )  # fmt: skip
 
     @cached_property
@@ -84,7 +84,14 @@ class Body:
             forces = -touching.gradient
             stretch = 1.0 + rate * (step + 1) / number
             elastic = add_forces(
-                u, cells.cells, cells.gradients, cells.volumes, stretch, problem.mu, problem.kappa, forces
+                u,
+                cells.cells,
+                cells.gradients,
+                cells.volumes,
+                stretch,
+                problem.parameters[0],
+                problem.bulk_modulus,
+                forces,
             )
             kinetic = advance(u, v, forces, problem.lumped_area, self.is_free, self.damping, dt)
         return u, kinetic / elastic

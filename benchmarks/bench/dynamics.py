@@ -39,7 +39,8 @@ def dynamics(quick: bool) -> Figures:
     step, contact = _costs(body, states[-1][0], 3 if quick else 9)
     steps_by_name = {
         "stable": body.duration * float(np.mean([1.0 / dt for dt in stable])) / SAFETY,
-        "BrainGrowth's": body.duration / (STEP * problem.mean_cortical_edge / np.sqrt(problem.kappa.max())),
+        "BrainGrowth's": body.duration
+        / (STEP * problem.mean_cortical_edge / np.sqrt(problem.bulk_modulus.max())),
     }
     found = [
         Figure("loading time in crossings by a shear wave", CROSSINGS),

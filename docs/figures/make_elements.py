@@ -22,7 +22,7 @@ sys.path.insert(0, str(HERE.parents[1] / "tests" / "convergence"))
 
 import cook  # noqa: E402
 
-from gyrify.physics.neo_hookean import lame_parameters  # noqa: E402
+from gyrify.physics.materials.neo_hookean import lame_parameters  # noqa: E402
 
 DATA: dict[str, Any] = json.loads((HERE / "elements.json").read_text(encoding="utf-8"))
 ELEMENTS = {"linear": "linear", "mean_dilatation": "mean dilatation", "quadratic": "quadratic"}

@@ -18,7 +18,8 @@ SOURCE = Path(gyrify.__file__).parent
 LAYERS = [
     {"errors"},
     {"base"},
-    {"config", "physics", "mesh", "theory"},
+    {"physics", "mesh", "theory"},
+    {"config"},
     {"energy", "metrics"},
     {"solve", "phenotype"},
     {"model"},
@@ -31,7 +32,7 @@ LAYERS = [
 ]
 # What kernels and readers may know, more strictly than by their layer.
 MAY_IMPORT = {
-    "config": {"base", "errors"},
+    "config": {"base", "errors", "physics"},
     "physics": {"base"},
     "mesh": {"errors"},
     "theory": {"errors"},

@@ -19,7 +19,14 @@ def test_forces_are_those_of_the_energy(problem: Slice, state: np.ndarray) -> No
     cells, forces = problem.simplices, np.zeros_like(state)
     stretch = 1.0 + problem.growth.rate * time
     value = add_forces(
-        state, cells.cells, cells.gradients, cells.volumes, stretch, problem.mu, problem.kappa, forces
+        state,
+        cells.cells,
+        cells.gradients,
+        cells.volumes,
+        stretch,
+        problem.parameters[0],
+        problem.bulk_modulus,
+        forces,
     )
     assert value == pytest.approx(energy.value, rel=1e-12)
     np.testing.assert_allclose(-forces, energy.gradient, rtol=0, atol=1e-10 * np.abs(forces).max())

@@ -11,7 +11,7 @@ import dataclasses
 import numpy as np
 from panels import Panel, quadrilaterals
 
-from gyrify.physics.neo_hookean import lame_parameters
+from gyrify.physics.materials.neo_hookean import lame_parameters
 
 # Shear force over mu [mm]; the tip then moves by about 7 of 60 mm.
 FORCE = 1.25

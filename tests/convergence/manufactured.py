@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from panels import Panel
 
-from gyrify.physics.neo_hookean import lame_parameters
+from gyrify.physics.materials.neo_hookean import lame_parameters
 
 _STEP = 1e-30
 

@@ -100,7 +100,7 @@ class Panel:
         """Elastic term of the element."""
         n = self.simplices.volumes.size
         k = ElasticKinematics.of(self.simplices, np.tile(np.eye(2), (n, 1, 1)), np.ones(n))
-        material = (k, np.full(n, mu), np.full(n, kappa), k.volumes, self.pattern)
+        material = (k, np.stack([np.full(n, mu), np.full(n, kappa)]), k.volumes, self.pattern)
         if self.element == "mean_dilatation":
             return MeanDilatationEnergy(*material, self.patches)
         return ElasticEnergy(*material)

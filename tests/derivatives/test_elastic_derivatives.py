@@ -84,14 +84,15 @@ def test_forces_equal_the_complex_step(rng: np.random.Generator) -> None:
 
 def test_stress_of_the_arrays_is_that_of_the_kernel(rng: np.random.Generator) -> None:
     """Forces on a triangle are weight P grad N; P33 is the derivative by the out-of-plane stretch."""
-    from gyrify.physics.isotropic import energy_density, first_piola
+    from gyrify.physics.materials import NEO_HOOKEAN
+    from gyrify.physics.stress import energy_density, first_piola
 
     n, h = 30, 1e-30
     F, f33 = np.eye(2) + rng.uniform(-0.3, 0.3, (n, 2, 2)), rng.uniform(0.5, 1.2, n)
     mu, kappa = rng.uniform(1, 4, n), rng.uniform(5, 30, n)
-    W = energy_density(F, f33, mu, kappa)
+    W = energy_density(NEO_HOOKEAN, F, f33, np.stack([mu, kappa]))
     assert pytest.approx(neo_hookean(embedded(F, f33), mu, kappa), rel=1e-12) == W
-    P, P33 = first_piola(F, f33, mu, kappa)
+    P, P33 = first_piola(NEO_HOOKEAN, F, f33, np.stack([mu, kappa]))
     in_plane = F.reshape(n, 4)
     expected = complex_step(lambda z: neo_hookean(embedded(z.reshape(-1, 2, 2), f33), mu, kappa), in_plane)
     assert P.reshape(n, 4) == pytest.approx(expected, abs=1e-12 * abs(expected).max())

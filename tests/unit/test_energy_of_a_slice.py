@@ -9,7 +9,7 @@ from gyrify.config import Config
 from gyrify.energy.viscous import DragEnergy, KelvinVoigtEnergy
 from gyrify.mesh import GREY, WHITE
 from gyrify.model.slice import Slice
-from gyrify.physics.neo_hookean import lame_parameters
+from gyrify.physics.materials.neo_hookean import lame_parameters
 from gyrify.solve.problem import State
 
 
@@ -38,10 +38,10 @@ def test_each_tissue_has_its_moduli(tiny: Config) -> None:
         material__poisson_ratio_white=0.4,
     )
     grey, white = slice_.mesh.region == GREY, slice_.mesh.region == WHITE
-    assert only(slice_.mu[grey]) == pytest.approx(3.6)
-    assert only(slice_.kappa[grey]) == pytest.approx(6.0)
-    assert only(slice_.mu[white]) == pytest.approx(12.24 / 2.8)
-    assert only(slice_.kappa[white]) == pytest.approx(12.24 / 0.6)
+    assert only(slice_.parameters[0][grey]) == pytest.approx(3.6)
+    assert only(slice_.bulk_modulus[grey]) == pytest.approx(6.0)
+    assert only(slice_.parameters[0][white]) == pytest.approx(12.24 / 2.8)
+    assert only(slice_.bulk_modulus[white]) == pytest.approx(12.24 / 0.6)
 
 
 def test_each_tissue_has_its_growth(tiny: Config) -> None:

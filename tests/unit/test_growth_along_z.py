@@ -48,8 +48,8 @@ def test_energy_at_rest_is_that_of_cells_squeezed_by_their_growth(tiny: Config) 
     J_g = stretch ** (2.0 + s)
     invariant = 2.0 / stretch**2 + stretch ** (-2.0 * s)
     W = (
-        0.5 * problem.mu * (invariant * J_g ** (2.0 / 3.0) - 3.0)
-        + 0.5 * problem.kappa * (1.0 / J_g - 1.0) ** 2
+        0.5 * problem.parameters[0] * (invariant * J_g ** (2.0 / 3.0) - 3.0)
+        + 0.5 * problem.bulk_modulus * (1.0 / J_g - 1.0) ** 2
     )
     u = np.zeros(problem.state_shape)
     energy = problem.elastic_energy(problem.kinematics(time)).evaluate(u, 0).value

@@ -49,7 +49,9 @@ def term_of(points: np.ndarray) -> ElasticEnergy:
     simplices = Simplices.of(points[None], CELLS, 6)
     n = simplices.volumes.size
     k = ElasticKinematics.of(simplices, np.tile(np.eye(2), (n, 1, 1)), np.ones(n))
-    return ElasticEnergy(k, np.full(n, 3.0), np.full(n, 20.0), k.volumes, CellPattern(simplices.cells, 2))
+    return ElasticEnergy(
+        k, np.array([[3.0], [20.0]]) * np.ones(n), k.volumes, CellPattern(simplices.cells, 2)
+    )
 
 
 @settings(max_examples=200, deadline=None)

@@ -9,7 +9,7 @@ import pytest
 
 from gyrify.errors import ConfigError
 from gyrify.theory.annulus import Annulus, base_state
-from gyrify.theory.material import growth_stretch
+from gyrify.theory.moduli import growth_stretch
 
 READINGS = [
     {},

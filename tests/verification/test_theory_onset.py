@@ -22,7 +22,7 @@ from gyrify.theory import (
     surface_limit,
 )
 from gyrify.theory.bilayer import Bilayer
-from gyrify.theory.material import compressible
+from gyrify.theory.moduli import compressible
 
 
 @pytest.mark.parametrize(

@@ -183,7 +183,7 @@ def test_work_of_growth_at_rest_is_the_closed_form(tiny: Config):
 
     def energy(fraction: float) -> float:
         stretch = 1.0 + fraction  # 0.002 * 500 = 1
-        density = stretch**3 * 0.5 * problem.kappa * (stretch**-3 - 1.0) ** 2
+        density = stretch**3 * 0.5 * problem.bulk_modulus * (stretch**-3 - 1.0) ** 2
         return float(density @ problem.simplices.volumes)
 
     expected = (energy(t + step) - energy(t - step)) / (2.0 * step)

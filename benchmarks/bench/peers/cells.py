@@ -55,7 +55,13 @@ class GrownCells:
         assert config.growth.energy_per == "grown", "energy is counted per grown volume"
         stretch = np.sqrt(kinematics.J_g * kinematics.f33)  # det F_g without its 33 entry, in the plane
         return GrownCells(
-            mesh.points, mesh.cells, stretch, kinematics.f33, kinematics.J_g, problem.mu, problem.kappa
+            mesh.points,
+            mesh.cells,
+            stretch,
+            kinematics.f33,
+            kinematics.J_g,
+            problem.parameters[0],
+            problem.bulk_modulus,
         )
 
 

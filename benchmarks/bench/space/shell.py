@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from gyrify.energy.elastic import CellPattern, ElasticEnergy
 from gyrify.energy.kinematics import ElasticKinematics, Simplices
 from gyrify.energy.term import FloatArray, IntArray
-from gyrify.physics.neo_hookean import lame_parameters
+from gyrify.physics.materials.neo_hookean import lame_parameters
 
 # Semi-axes of the outer surface [mm], the hole as a fraction of them, and the tissue of `reference-slice`.
 SEMI_AXES = np.array([39.4, 32.9, 32.9])

@@ -53,6 +53,13 @@ def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     return decorate
 
 
+def overload(function: Callable[..., Any], **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Say what a function is in compiled code, by the types of its arguments; see ``numba.extending``."""
+    from numba.extending import overload as numba_overload
+
+    return numba_overload(function, **options)  # type: ignore[no-any-return]
+
+
 def _avoid_a_home_that_is_none() -> None:
     """For a user without a home, numba would make a folder named ``~`` in the current one."""
     is_homeless = os.path.expanduser("~").startswith("~")

@@ -151,8 +151,13 @@ class MeshSettings(Section):
 
 
 class Material(Section):
-    """Neo-Hookean cortex and white matter."""
+    """Hyperelastic cortex and white matter."""
 
+    law: str = setting(
+        "neo_hookean",
+        "Energy of the elastic deformation: a name in the list of materials.",
+        max_length=40,
+    )
     young_modulus: float = setting(
         9210.87,
         "Young's modulus E_G of the cortex.",

@@ -28,6 +28,7 @@ LATER: Final = (
     ("mesh", "inversion_resistance"),
     ("growth", "out_of_plane_exponent"),
     ("dissipation", "course"),
+    ("material", "law"),
 )
 
 

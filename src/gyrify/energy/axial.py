@@ -14,6 +14,7 @@ import numpy as np
 from gyrify.energy.elastic import CellPattern, ElasticEnergy
 from gyrify.energy.kinematics import ElasticKinematics
 from gyrify.energy.term import Evaluation, FloatArray, IntArray
+from gyrify.physics.materials import NEO_HOOKEAN, Material
 
 
 class AxialElasticEnergy(ElasticEnergy):
@@ -23,7 +24,7 @@ class AxialElasticEnergy(ElasticEnergy):
     ----------
     kinematics : ElasticKinematics
         Cells in their grown state, at F33 = 1.
-    mu, kappa, weight
+    parameters, weight, material
         As in `ElasticEnergy`.
     pattern : CellPattern
         Sparsity of the cells and the axial unknown; see `axial_pattern`.
@@ -34,13 +35,13 @@ class AxialElasticEnergy(ElasticEnergy):
     def __init__(
         self,
         kinematics: ElasticKinematics,
-        mu: FloatArray,
-        kappa: FloatArray,
+        parameters: FloatArray,
         weight: FloatArray,
         pattern: CellPattern,
         length: float,
+        material: Material = NEO_HOOKEAN,
     ) -> None:
-        super().__init__(kinematics, mu, kappa, weight, pattern)
+        super().__init__(kinematics, parameters, weight, pattern, material)
         self.length = length
         self._add_cells = self._kernels.accumulate_axial
         self._slope = kinematics.f33 / length
@@ -50,7 +51,7 @@ class AxialElasticEnergy(ElasticEnergy):
         F33 = 1.0 + float(u[-1, 0]) / self.length
         if not F33 > 0.0:
             return Evaluation(np.inf)
-        return self._accumulate(u, order, project_psd, self.kappa, np.zeros_like(self.kappa), F33)
+        return self._accumulate(u, order, project_psd, self.parameters, np.zeros_like(self.weight), F33)
 
     def max_step(self, u: FloatArray, du: FloatArray) -> float:
         """Largest fraction of du, at most 1, before a cell is inverted or F33 vanishes."""

@@ -3,7 +3,7 @@
 Inner loops run over the points of the batch, so that the compiler makes vector instructions of them. As in
 `gyrify.energy.cell` dimension and number of nodes are arguments for which the callers pass constants. The
 cell matrix needs no tangent tensor: with h_a = H g_a and f_a = F g_a of the shape-function gradients g_a,
-every term of `gyrify.physics.isotropic` becomes a product of nodal vectors.
+every term of `gyrify.physics.stress` becomes a product of nodal vectors.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from __future__ import annotations
 import numpy as np
 
 from gyrify.base.compiled import njit
-from gyrify.physics.isotropic import coefficients
-from gyrify.physics.neo_hookean import density
+from gyrify.physics.materials.dispatch import density
+from gyrify.physics.stress import coefficients
 
 # The functions below write into their last arguments; numba compiles them without annotations.
-# mypy: disable-error-code="no-untyped-def"
+# mypy: disable-error-code="no-untyped-def, no-untyped-call"
 
 # Points of a batch: enough for long loops, few enough to stay in the first cache.
 LANES = 64
@@ -136,11 +136,11 @@ def cube_roots(n, x, root):
 
 
 @njit(cache=True, inline="always")
-def energy(first, n, I1, J, root, mu, kappa, weight, entries):
+def energy(material, first, n, I1, J, root, parameters, weight, entries):
     """Sum of w W."""
     for l in range(n):
         c = first + l
-        entries[l] = weight[c] * density(I1[l], J[l], root[l], mu[c], kappa[c])
+        entries[l] = weight[c] * density(material, I1[l], J[l], root[l], parameters, c)
     total = 0.0
     for l in range(n):
         total += entries[l]
@@ -148,11 +148,11 @@ def energy(first, n, I1, J, root, mu, kappa, weight, entries):
 
 
 @njit(cache=True, inline="always")
-def weigh_moduli(first, n, I1, J, root, mu, kappa, pressure, weight, moduli):
-    """w times a, b, c, d, e of `gyrify.physics.isotropic`."""
+def weigh_moduli(material, first, n, I1, J, root, parameters, pressure, weight, moduli):
+    """w times a, b, c, d, e of `gyrify.physics.stress`."""
     for l in range(n):
         c, w = first + l, weight[first + l]
-        a_, b_, c_, d_, e_ = coefficients(I1[l], J[l], root[l], mu[c], kappa[c], pressure[c])
+        a_, b_, c_, d_, e_ = coefficients(material, I1[l], J[l], root[l], parameters, c, pressure[c])
         moduli[0, l], moduli[1, l], moduli[2, l] = w * a_, w * b_, w * c_
         moduli[3, l], moduli[4, l] = w * d_, w * e_
 

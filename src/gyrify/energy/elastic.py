@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from gyrify.energy.kernels import ElasticKernels, elastic_kernels
+from gyrify.energy.kernels import cell_kernels, elastic_kernels
 from gyrify.energy.kinematics import ElasticKinematics
 from gyrify.energy.term import Evaluation, FloatArray, Hessian, IntArray, Pattern
+from gyrify.physics.materials import NEO_HOOKEAN, Material
 
 
 class CellPattern:
@@ -35,7 +36,7 @@ class CellPattern:
 
 
 class ElasticEnergy:
-    r"""Neo-Hookean cells under growth.
+    r"""Hyperelastic cells under growth.
 
     .. math:: E(u) = \sum_c V_c w_c W(F_e), \quad w_c = J_g \text{ (per grown volume) or } 1
 
@@ -43,12 +44,14 @@ class ElasticEnergy:
     ----------
     kinematics : ElasticKinematics
         Cells in their grown state.
-    mu, kappa : (n_cells,) float array
-        Shear and bulk modulus [Pa].
+    parameters : (n_parameters, n_cells) float array
+        Of the material; the last one is the bulk modulus [Pa].
     weight : (n_cells,) float array
         Volume that the energy density is counted by [mm^2]: V J_g (grown) or V (reference).
     pattern : CellPattern
         Sparsity of the mesh.
+    material : Material
+        Which solid.
     """
 
     is_barrier = False
@@ -56,29 +59,30 @@ class ElasticEnergy:
     def __init__(
         self,
         kinematics: ElasticKinematics,
-        mu: FloatArray,
-        kappa: FloatArray,
+        parameters: FloatArray,
         weight: FloatArray,
         pattern: CellPattern,
+        material: Material = NEO_HOOKEAN,
     ) -> None:
         self.kinematics = kinematics
-        self.mu, self.kappa, self.weight = mu, kappa, weight
+        self.parameters, self.weight, self.material = parameters, weight, material
         self.pattern = pattern
         _, n_nodes, n_dim = kinematics.gradients.shape
-        self._kernels: ElasticKernels = elastic_kernels(n_dim, n_nodes)
+        self._kernels = elastic_kernels(n_dim, n_nodes, material)
+        self._cell_kernels = cell_kernels(n_dim, n_nodes)
         self._add_cells = self._kernels.accumulate
         self._slope = np.empty(0)
 
     def evaluate(self, u: FloatArray, order: int, project_psd: bool = False) -> Evaluation:
         """Energy [Pa mm^2], gradient [Pa mm], Hessian [Pa]; see `EnergyTerm`."""
-        return self._accumulate(u, order, project_psd, self.kappa, np.zeros_like(self.kappa))
+        return self._accumulate(u, order, project_psd, self.parameters, np.zeros_like(self.weight))
 
     def _accumulate(
         self,
         u: FloatArray,
         order: int,
         project_psd: bool,
-        kappa: FloatArray,
+        parameters: FloatArray,
         pressure: FloatArray,
         F33: float = 1.0,
     ) -> Evaluation:
@@ -94,8 +98,7 @@ class ElasticEnergy:
             k.gradients,
             F33 * k.f33,
             self._slope,
-            self.mu,
-            kappa,
+            parameters,
             pressure,
             self.weight,
         )
@@ -108,5 +111,5 @@ class ElasticEnergy:
     def max_step(self, u: FloatArray, du: FloatArray) -> float:
         """Largest fraction of du, at most 1, before a cell is inverted anywhere in it."""
         k = self.kinematics
-        step = float(self._kernels.largest_step(u, du, k.cells, k.base, k.gradients))
+        step = float(self._cell_kernels.largest_step(u, du, k.cells, k.base, k.gradients))
         return step if k.curved is None else step * k.curved.largest_step(u, step * du)

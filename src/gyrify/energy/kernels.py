@@ -38,18 +38,25 @@ from gyrify.energy.dashpot import (
     subtract_from_strain,
     weigh,
 )
+from gyrify.energy.principal import principal_kernel
 from gyrify.energy.tangents import add_projected
-from gyrify.physics import isotropic, neo_hookean
+from gyrify.physics import stress
+from gyrify.physics.materials import MATERIALS, Material, dispatch
 
 # Closures may capture integers only: numba finds them again in its cache, but not captured functions. The
 # cache looks at this file alone, so that the digest of what the kernels are made of is one of the integers.
 
 
 class ElasticKernels(NamedTuple):
-    """Compiled functions of one kind of simplex."""
+    """Compiled energy of one material on one kind of simplex; without and with a common F33 as an unknown."""
 
     accumulate: Callable[..., float]
     accumulate_axial: Callable[..., float]
+
+
+class CellKernels(NamedTuple):
+    """Compiled functions of one kind of simplex that know no material."""
+
     dissipate: Callable[..., float]
     largest_step: Callable[..., float]
     grow: Callable[..., None]
@@ -58,12 +65,18 @@ class ElasticKernels(NamedTuple):
 
 
 @cache
-def elastic_kernels(n_dim: int, n_nodes: int) -> ElasticKernels:
+def elastic_kernels(n_dim: int, n_nodes: int, material: Material) -> ElasticKernels:
+    """Energy of cells of ``n_nodes`` nodes in ``n_dim`` dimensions, compiled at its first call."""
+    place, digest = MATERIALS.index(material), _sources_digest(material)
+    make = _accumulate if material.form == "invariants" else principal_kernel
+    return ElasticKernels(*(make(n_dim, n_nodes, axial, place, digest) for axial in (0, 1)))
+
+
+@cache
+def cell_kernels(n_dim: int, n_nodes: int) -> CellKernels:
     """Kernels for cells of ``n_nodes`` nodes in ``n_dim`` dimensions, compiled at their first call."""
-    digest = _sources_digest()
-    return ElasticKernels(
-        _accumulate(n_dim, n_nodes, 0, digest),
-        _accumulate(n_dim, n_nodes, 1, digest),
+    digest = _sources_digest(None)
+    return CellKernels(
         _dissipate(n_dim, n_nodes, digest),
         _largest_step(n_dim, n_nodes, digest),
         _grow(n_dim, n_nodes, digest),
@@ -72,13 +85,15 @@ def elastic_kernels(n_dim: int, n_nodes: int) -> ElasticKernels:
     )
 
 
-def _sources_digest() -> int:
+def _sources_digest(material: Material | None) -> int:
     """Checksum, not negative, of the source of everything that is compiled into the kernels."""
-    modules = (cell, dashpot, batch, projection, tangents, isotropic, neo_hookean)
+    modules: list[Any] = [cell, dashpot, batch, projection, tangents, stress, dispatch]
+    if material is not None:
+        modules += [inspect.getmodule(f) or f for f in (material.density, material.derivatives)]
     return zlib.crc32("".join(map(inspect.getsource, modules)).encode())
 
 
-def _accumulate(n_dim: int, n_nodes: int, axial: int, digest: int) -> Any:
+def _accumulate(n_dim: int, n_nodes: int, axial: int, material: int, digest: int) -> Any:
     @njit(cache=True, error_model="numpy")
     def accumulate(  # type: ignore[no-untyped-def]
         u,
@@ -87,8 +102,7 @@ def _accumulate(n_dim: int, n_nodes: int, axial: int, digest: int) -> Any:
         gradients,
         f33,
         slope,
-        mu,
-        kappa,
+        parameters,
         pressure,
         weight,
         order,
@@ -116,10 +130,10 @@ def _accumulate(n_dim: int, n_nodes: int, axial: int, digest: int) -> Any:
             if not invert_all(n_dim, n, F, H, det):
                 return np.inf
             invariants(n_dim, first, n, F, det, f33, I1, J, root)
-            value += energy(first, n, I1, J, root, mu, kappa, weight, entries)
+            value += energy(material, first, n, I1, J, root, parameters, weight, entries)
             if order == 0:
                 continue
-            weigh_moduli(first, n, I1, J, root, mu, kappa, pressure, weight, moduli)
+            weigh_moduli(material, first, n, I1, J, root, parameters, pressure, weight, moduli)
             products(n_dim, n_nodes, n, F, g, f)
             products(n_dim, n_nodes, n, H, g, h)
             add_forces(n_dim, n_nodes, first, n, f, h, moduli, cells, gradient)

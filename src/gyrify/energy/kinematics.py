@@ -8,7 +8,7 @@ import numpy as np
 
 from gyrify.energy.curved import CurvedCells
 from gyrify.energy.element import reference_element
-from gyrify.energy.kernels import elastic_kernels
+from gyrify.energy.kernels import cell_kernels
 from gyrify.energy.term import FloatArray, IntArray
 
 
@@ -87,7 +87,7 @@ class Simplices:
         """(n,) in-plane det F of a state u [mm] at the integration points."""
         n_cells, n_nodes, n_dim = self.gradients.shape
         ratio = np.empty(n_cells)
-        elastic_kernels(n_dim, n_nodes).volume_ratio(u, self.cells, self.gradients, ratio)
+        cell_kernels(n_dim, n_nodes).volume_ratio(u, self.cells, self.gradients, ratio)
         return ratio
 
     def least_volume_ratio(self, u: FloatArray) -> FloatArray:
@@ -156,7 +156,7 @@ class ElasticKinematics:
         """
         n_cells, n_nodes, n_dim = simplices.gradients.shape
         base, gradients, det = np.empty_like(F_g), np.empty_like(simplices.gradients), np.empty(n_cells)
-        elastic_kernels(n_dim, n_nodes).grow(F_g, simplices.gradients, base, gradients, det)
+        cell_kernels(n_dim, n_nodes).grow(F_g, simplices.gradients, base, gradients, det)
         return ElasticKinematics(
             cells=simplices.cells,
             base=base,
@@ -172,5 +172,5 @@ class ElasticKinematics:
         """(n_cells, n_dim, n_dim) elastic deformation gradients in the plane of a state u [mm]."""
         _, n_nodes, n_dim = self.gradients.shape
         F = np.empty_like(self.base)
-        elastic_kernels(n_dim, n_nodes).deform(u, self.cells, self.base, self.gradients, F)
+        cell_kernels(n_dim, n_nodes).deform(u, self.cells, self.base, self.gradients, F)
         return F

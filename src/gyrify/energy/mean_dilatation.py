@@ -15,6 +15,7 @@ import numpy as np
 from gyrify.energy.elastic import CellPattern, ElasticEnergy
 from gyrify.energy.kinematics import ElasticKinematics
 from gyrify.energy.term import Evaluation, FloatArray, Hessian, IntArray, Pattern
+from gyrify.physics.materials import NEO_HOOKEAN, Material
 
 
 class PatchPattern:
@@ -62,12 +63,12 @@ def _pairs_in_patches(patch: IntArray) -> IntArray:
 
 
 class MeanDilatationEnergy(ElasticEnergy):
-    """Neo-Hookean cells with the volume ratio averaged over patches; see the module's equation.
+    """Hyperelastic cells with the volume ratio averaged over patches; see the module's equation.
 
     Parameters
     ----------
-    kinematics, mu, kappa, weight, pattern
-        As in `ElasticEnergy`; kappa is the same all over a patch.
+    kinematics, parameters, weight, pattern, material
+        As in `ElasticEnergy`; the bulk modulus is the same all over a patch.
     patches : PatchPattern
         Which cells share a volume ratio.
     """
@@ -75,16 +76,17 @@ class MeanDilatationEnergy(ElasticEnergy):
     def __init__(
         self,
         kinematics: ElasticKinematics,
-        mu: FloatArray,
-        kappa: FloatArray,
+        parameters: FloatArray,
         weight: FloatArray,
         pattern: CellPattern,
         patches: PatchPattern,
+        material: Material = NEO_HOOKEAN,
     ) -> None:
-        super().__init__(kinematics, mu, kappa, weight, pattern)
+        super().__init__(kinematics, parameters, weight, pattern, material)
         self.patches = patches
         self._patch_weight = patches.sums(weight)
-        self._patch_kappa = patches.sums(weight * kappa) / self._patch_weight
+        self._patch_kappa = patches.sums(weight * parameters[-1]) / self._patch_weight
+        self._isochoric = np.concatenate([parameters[:-1], np.zeros_like(parameters[-1:])])
 
     def evaluate(self, u: FloatArray, order: int, project_psd: bool = False) -> Evaluation:
         """Energy [Pa mm^2], gradient [Pa mm], Hessian [Pa]; see `EnergyTerm`."""
@@ -94,7 +96,7 @@ class MeanDilatationEnergy(ElasticEnergy):
             return Evaluation(np.inf)
         excess = self.patches.sums(self.weight * J) / self._patch_weight - 1.0
         pressure = (self._patch_kappa * excess)[self.patches.patch]
-        isochoric = self._accumulate(u, order, project_psd, np.zeros_like(self.kappa), pressure)
+        isochoric = self._accumulate(u, order, project_psd, self._isochoric, pressure)
         value = isochoric.value + 0.5 * float(np.sum(self._patch_weight * self._patch_kappa * excess**2))
         hessian = isochoric.hessian
         if hessian is not None:

@@ -21,30 +21,37 @@ def add_projected(n_dim, n_nodes, axial, first, n, F, H, g, f33, slope, moduli, 
         if axial:
             axial_tangent(n_dim, l, F, H, f33[first + l], moduli, C)
         project_to_psd(C)
-        entry = 0
-        for a in range(n_nodes):
-            for i in range(n_dim):
-                for b in range(a, n_nodes):
-                    for k in range(i if b == a else 0, n_dim):
-                        total = 0.0
-                        for j in range(n_dim):
-                            for m in range(n_dim):
-                                total += g[a, j, l] * C[i * n_dim + j, k * n_dim + m] * g[b, m, l]
-                        values[position[first + l, entry]] += total
-                        entry += 1
-        if axial:
-            add_axial_column(n_dim, n_nodes, l, C, g, slope[first + l], position[first + l, entry:], values)
+        slope_here = slope[first + l] if axial else 0.0
+        add_matrix(n_dim, n_nodes, axial, C, g[:, :, l], slope_here, position[first + l], values)
 
 
 @njit(cache=True)
-def add_axial_column(n_dim, n_nodes, l, C, g, slope, position, values):
+def add_matrix(n_dim, n_nodes, axial, C, g, slope, position, values):
+    """Add the cell matrix of one point of a tangent over (i, j), (k, m), its upper triangle row by row."""
+    entry = 0
+    for a in range(n_nodes):
+        for i in range(n_dim):
+            for b in range(a, n_nodes):
+                for k in range(i if b == a else 0, n_dim):
+                    total = 0.0
+                    for j in range(n_dim):
+                        for m in range(n_dim):
+                            total += g[a, j] * C[i * n_dim + j, k * n_dim + m] * g[b, m]
+                    values[position[entry]] += total
+                    entry += 1
+    if axial:
+        add_axial_column(n_dim, n_nodes, C, g, slope, position[entry:], values)
+
+
+@njit(cache=True)
+def add_axial_column(n_dim, n_nodes, C, g, slope, position, values):
     """Add the column of the axial unknown to the matrix of one point."""
     last = n_dim * n_dim
     for a in range(n_nodes):
         for i in range(n_dim):
             total = 0.0
             for j in range(n_dim):
-                total += C[last, i * n_dim + j] * g[a, j, l]
+                total += C[last, i * n_dim + j] * g[a, j]
             values[position[a * n_dim + i]] += slope * total
     values[position[n_nodes * n_dim]] += slope * slope * C[last, last]
 

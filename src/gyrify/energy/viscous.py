@@ -9,7 +9,7 @@ import numpy as np
 
 from gyrify.energy.dashpot import strains
 from gyrify.energy.elastic import CellPattern
-from gyrify.energy.kernels import elastic_kernels
+from gyrify.energy.kernels import cell_kernels
 from gyrify.energy.kinematics import ElasticKinematics
 from gyrify.energy.term import Evaluation, FloatArray, Hessian, Pattern
 
@@ -112,7 +112,7 @@ class KelvinVoigtEnergy:
         self.previous_strain = previous_strain
         self.pattern = pattern
         _, n_nodes, n_dim = kinematics.gradients.shape
-        self._add_cells = elastic_kernels(n_dim, n_nodes).dissipate
+        self._add_cells = cell_kernels(n_dim, n_nodes).dissipate
 
     def evaluate(self, u: FloatArray, order: int, project_psd: bool = False) -> Evaluation:
         """Energy [Pa mm^2], gradient [Pa mm], Hessian [Pa]; see `EnergyTerm`.

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from gyrify.config import Config
 from gyrify.energy.term import FloatArray
 from gyrify.physics.growth import Growth
-from gyrify.physics.neo_hookean import lame_parameters
+from gyrify.physics.materials import Material, material_named
 
 
 def growth_of(config: Config, grey: NDArray[np.bool_], across: FloatArray) -> Growth:
@@ -34,10 +34,14 @@ def growth_of(config: Config, grey: NDArray[np.bool_], across: FloatArray) -> Gr
     )
 
 
-def moduli_of(config: Config, grey: NDArray[np.bool_]) -> tuple[FloatArray, FloatArray]:
-    """(n,) shear and (n,) bulk modulus [Pa]; parameters as in `growth_of`."""
-    material = config.material
-    stiff = lame_parameters(material.young_modulus, material.poisson_ratio)
-    soft = lame_parameters(material.young_modulus_white, material.poisson_ratio_white)
-    mu, kappa = (np.where(grey, g, w) for g, w in zip(stiff, soft, strict=True))
-    return mu, kappa
+def parameters_of(config: Config, grey: NDArray[np.bool_]) -> FloatArray:
+    """(n_parameters, n) parameters of the material at each point; arguments as in `growth_of`."""
+    given, law = config.material, material_of(config)
+    stiff = law.parameters(given.young_modulus, given.poisson_ratio)
+    soft = law.parameters(given.young_modulus_white, given.poisson_ratio_white)
+    return np.stack([np.where(grey, g, w) for g, w in zip(stiff, soft, strict=True)])
+
+
+def material_of(config: Config) -> Material:
+    """The material of a configuration."""
+    return material_named(config.material.law)

@@ -14,7 +14,7 @@ from gyrify.energy.mean_dilatation import MeanDilatationEnergy, PatchPattern
 from gyrify.energy.term import FloatArray, IntArray
 from gyrify.errors import InvertedCellError
 from gyrify.mesh import GREY, Mesh
-from gyrify.model.body import growth_of, moduli_of
+from gyrify.model.body import growth_of, material_of, parameters_of
 from gyrify.model.meshing import build_mesh
 
 
@@ -41,8 +41,10 @@ class Tissue:
         Integration points of the cells; fields over space have one value for each of them.
     growth : Growth
         Growth of each integration point.
-    mu, kappa : (n,) float array
-        Shear and bulk modulus [Pa].
+    material : Material
+        Which solid.
+    parameters : (n_parameters, n) float array
+        Its parameters; the last one is the bulk modulus [Pa].
     """
 
     def __init__(self, config: Config, mesh: Mesh | None = None) -> None:
@@ -50,7 +52,12 @@ class Tissue:
         self.mesh = build_mesh(config) if mesh is None else mesh
         grey = self.mesh.region[self.simplices.cell] == GREY
         self.growth = growth_of(config, grey, self.mesh.across[self.simplices.cell])
-        self.mu, self.kappa = moduli_of(config, grey)
+        self.material, self.parameters = material_of(config), parameters_of(config, grey)
+
+    @property
+    def bulk_modulus(self) -> FloatArray:
+        """(n,) bulk modulus [Pa]."""
+        return np.asarray(self.parameters[-1])
 
     @property
     def has_axial_unknown(self) -> bool:
@@ -147,16 +154,16 @@ class Tissue:
         J_g = self.volume_growth(time)
         weight = self._counted(self.simplices.volumes, J_g)
         mean = self.patches.sums(weight * self.volume_ratio(u) / J_g) / self.patches.sums(weight)
-        return np.asarray(self.kappa * (mean[self.patches.patch] - 1.0))
+        return np.asarray(self.bulk_modulus * (mean[self.patches.patch] - 1.0))
 
     def elastic_energy(self, kinematics: ElasticKinematics) -> ElasticEnergy:
         """Hyperelastic energy of grown cells."""
-        material = (kinematics, self.mu, self.kappa, self.weight(kinematics), self.pattern)
+        cells = (kinematics, self.parameters, self.weight(kinematics), self.pattern)
         if self.has_axial_unknown:
-            return AxialElasticEnergy(*material, self.axial_length)
+            return AxialElasticEnergy(*cells, self.axial_length, self.material)
         if self.patches is not None:
-            return MeanDilatationEnergy(*material, self.patches)
-        return ElasticEnergy(*material)
+            return MeanDilatationEnergy(*cells, self.patches, self.material)
+        return ElasticEnergy(*cells, self.material)
 
     def weight(self, kinematics: ElasticKinematics) -> FloatArray:
         """Volume that energy densities are counted by [mm^2]."""

@@ -26,7 +26,7 @@ from gyrify.errors import ConfigError
 from gyrify.metrics.contour import distance_to_line
 from gyrify.metrics.curvature import curvature
 from gyrify.model.slice import Slice
-from gyrify.physics.neo_hookean import derivatives
+from gyrify.physics.stress import planar_cauchy
 from gyrify.solve.types import FloatArray
 from gyrify.store.history import History
 from gyrify.store.state_numbers import state_number
@@ -214,14 +214,8 @@ class StateFields:
         """Cauchy stress components 11, 22, 33, 12, each (n,) [Pa]; 13 and 23 are zero."""
         problem, F = self._problem, self._F_e
         f33 = problem.axial_stretch(self._state) / problem.growth.out_of_plane(self._time)
-        b11, b22 = F[0, 0] ** 2 + F[0, 1] ** 2, F[1, 0] ** 2 + F[1, 1] ** 2
-        b33, b12 = f33**2, F[0, 0] * F[1, 0] + F[0, 1] * F[1, 1]
         pressure = problem.volumetric_pressure(self._state, self._time)
-        kappa = problem.kappa if pressure is None else np.zeros_like(problem.kappa)
-        W_1, W_J, *_ = derivatives.py_func(b11 + b22 + b33, self._J_e, np.cbrt(self._J_e), problem.mu, kappa)
-        W_J += 0.0 if pressure is None else pressure
-        factor = 2.0 * W_1 / self._J_e
-        return factor * b11 + W_J, factor * b22 + W_J, factor * b33 + W_J, factor * b12
+        return planar_cauchy(problem.material, F, f33, self._J_e, problem.parameters, pressure)
 
     @property
     def cell_stress(self) -> tuple[FloatArray, ...]:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gyrify.errors import ConfigError, SolveError
 from gyrify.theory.annulus_parameters import Annulus
-from gyrify.theory.material import Response
+from gyrify.theory.moduli import Response
 from gyrify.theory.spectral import Line
 
 __all__ = ["Annulus", "BaseState", "base_state"]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gyrify.errors import ConfigError
-from gyrify.theory.material import (
+from gyrify.theory.moduli import (
     EnergyPer,
     Law,
     OutOfPlane,

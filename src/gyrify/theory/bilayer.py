@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gyrify.errors import ConfigError, SolveError
-from gyrify.theory.material import EnergyPer, Response, compressible, elastic_moduli, incompressible
+from gyrify.theory.moduli import EnergyPer, Response, compressible, elastic_moduli, incompressible
 from gyrify.theory.wave import half_space_stiffness, state_matrix
 
 FloatArray = NDArray[np.float64]

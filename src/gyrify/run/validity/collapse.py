@@ -42,7 +42,7 @@ def _elastic_ratio(history: History, index: int) -> np.ndarray[Any, np.dtype[np.
     problem, u, time = history.slice, history.state_vector(index), float(history.growth_times[index])
     pressure = problem.volumetric_pressure(u, time)
     if pressure is not None:
-        return np.asarray(1.0 + pressure / problem.kappa)
+        return np.asarray(1.0 + pressure / problem.bulk_modulus)
     return np.asarray(problem.volume_ratio(u) / problem.volume_growth(time))
 
 

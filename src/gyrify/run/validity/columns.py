@@ -19,8 +19,8 @@ from gyrify.energy.element import reference_element
 from gyrify.errors import SolveError
 from gyrify.mesh import GREY
 from gyrify.mesh.layered_grid import Layers, Sheet, build_sheet
-from gyrify.model.body import growth_of, moduli_of
-from gyrify.physics.neo_hookean import derivatives
+from gyrify.model.body import growth_of, material_of, parameters_of
+from gyrify.physics.stress import response
 from gyrify.run.validity.bands import Bands
 
 if TYPE_CHECKING:
@@ -63,7 +63,9 @@ class MeshColumns:
         self._turn = turn[self._cell]
         grey = sheet.region[self._cell] == GREY
         self._growth = growth_of(config, grey, self._outwards(along + self._image)[self._cell])
-        self._mu, self._kappa = moduli_of(config, grey)
+        self._material, self._parameters = material_of(config), parameters_of(config, grey)
+        self._kappa = self._parameters[-1]
+        self._isochoric = np.concatenate([self._parameters[:-1], np.zeros_like(self._parameters[-1:])])
         # What the mesh adds to the guess, as far as it is known from another growth time.
         self._correction = np.zeros((sheet.depth.size, 2))
 
@@ -244,7 +246,9 @@ class MeshColumns:
             raise SolveError("A cell of the smooth state is inverted.", "Raise mesh.n_around.")
         bands, averages = Bands(*self._band), self._config.mesh.element == "mean_dilatation"
         pressure = self._averaged(J, F, B, weight, bands) if averages else np.zeros_like(J)
-        stress, tangent = _response(F, f33, self._mu, np.where(averages, 0.0, self._kappa), pressure)
+        stress, tangent = response(
+            self._material, F, f33, self._isochoric if averages else self._parameters, pressure
+        )
         force = np.zeros(bands.n + 1)
         np.add.at(force, self._unknowns, weight[:, None] * np.einsum("cx,cxp->cp", stress, B))
         stiffness = np.swapaxes(B, 1, 2) @ (weight[:, None, None] * tangent) @ B
@@ -266,26 +270,3 @@ class MeshColumns:
         unknowns, ahead = self._unknowns, self._ahead
         bands.add(unknowns[first], unknowns[second], ahead[first], ahead[second], products)
         return np.asarray(self._kappa * (mean[patch] - 1.0))
-
-
-def _response(
-    F: FloatArray, f33: FloatArray, mu: FloatArray, kappa: FloatArray, pressure: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Stress (n, 4) and tangent (n, 4, 4) [Pa], as in `gyrify.physics.isotropic`."""
-    J = np.linalg.det(F) * f33
-    I1 = np.einsum("cij,cij->c", F, F) + f33 * f33
-    W_1, W_J, W_11, W_1J, W_JJ = derivatives.py_func(I1, J, np.cbrt(J), mu, kappa)
-    b = J * (W_J + pressure)
-    H3 = np.swapaxes(np.linalg.inv(F), 1, 2)
-    f, h = F.reshape(-1, 4), H3.reshape(-1, 4)
-    box = np.einsum("cil,ckj->cijkl", H3, H3).reshape(-1, 4, 4)
-    pairs = (
-        (b + J * J * W_JJ, h[:, :, None] * h[:, None, :]),
-        (4.0 * W_11 + 0.0 * J, f[:, :, None] * f[:, None, :]),
-        (2.0 * J * W_1J, f[:, :, None] * h[:, None, :] + h[:, :, None] * f[:, None, :]),
-        (-b, box),
-    )
-    tangent = (2.0 * W_1)[:, None, None] * np.eye(4)
-    for factor, matrix in pairs:
-        tangent = tangent + factor[:, None, None] * matrix
-    return (2.0 * W_1)[:, None] * f + b[:, None] * h, tangent

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gyrify.errors import GyrifyError
+from gyrify.errors import ConfigError, GyrifyError
 
 if TYPE_CHECKING:
     from gyrify.config import Config
@@ -104,16 +104,32 @@ def _expected(_geometry: str, _material: str, _growth: str, held: _Held) -> Expe
         return Expected("", f"The theory has no answer: {fault.message}")
 
 
+def require_covered(config: Config) -> None:
+    """Refuse by name what no exact theory has.
+
+    Raises
+    ------
+    ConfigError
+        If there is any of it.
+    """
+    if config.material.law != "neo_hookean":
+        raise ConfigError(
+            f'the theory has no material.law = "{config.material.law}".',
+            'Set material.law = "neo_hookean" to compare with it.',
+        )
+
+
 def annulus_of(config: Config) -> Annulus:
     """Circle of the same area, hole, tissue and growth.
 
     Raises
     ------
     ConfigError
-        If it has no white matter.
+        If it has no white matter, or something that the theory does not have.
     """
     from gyrify.theory import Annulus
 
+    require_covered(config)
     geometry, material, growth = config.geometry, config.material, config.growth
     radius = geometry.mean_radius
     return Annulus(
@@ -174,6 +190,7 @@ def bilayer_of(config: Config) -> Bilayer | str:
     """Film on a half-space of the same tissue and growth, or why there is none."""
     from gyrify.theory import Bilayer
 
+    require_covered(config)
     growth, material = config.growth, config.material
     still = growth.ratio >= _STILL
     if growth.out_of_plane == "generalised":

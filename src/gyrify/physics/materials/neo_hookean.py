@@ -3,13 +3,15 @@ r"""Compressible neo-Hookean solid, per unit volume of the stress-free (grown) t
 .. math:: W = \frac{\mu}{2} (J^{-2/3} I_1 - 3) + \frac{\kappa}{2} (J - 1)^2
 
 This is the meaning of the paper's Eq. 6, whose print is garbled; J and I1 are those of the elastic
-deformation gradient in three dimensions. A material is this one function: the density and its
-derivatives by the invariants, from which `gyrify.physics.isotropic` forms stress and tangent.
+deformation gradient in three dimensions.
 """
 
 from __future__ import annotations
 
+from typing import Final
+
 from gyrify.base.compiled import njit
+from gyrify.physics.materials.material import Material
 
 
 def lame_parameters(young_modulus: float, poisson_ratio: float) -> tuple[float, float]:
@@ -31,14 +33,16 @@ def lame_parameters(young_modulus: float, poisson_ratio: float) -> tuple[float, 
 
 
 @njit(cache=True, inline="always")
-def density(I1, J, cube_root, mu, kappa):  # type: ignore[no-untyped-def]
-    """W [Pa]; the cube root of J is given because it costs more than all the rest."""
+def density(I1, J, cube_root, p, c):  # type: ignore[no-untyped-def]
+    """W [Pa]; see `Material`."""
+    mu, kappa = p[0, c], p[1, c]
     return 0.5 * mu * (I1 / (cube_root * cube_root) - 3.0) + 0.5 * kappa * (J - 1.0) * (J - 1.0)
 
 
 @njit(cache=True, inline="always")
-def derivatives(I1, J, cube_root, mu, kappa):  # type: ignore[no-untyped-def]
+def derivatives(I1, J, cube_root, p, c):  # type: ignore[no-untyped-def]
     """W_1, W_J, W_11, W_1J, W_JJ [Pa]: derivatives of W by I1 and J."""
+    mu, kappa = p[0, c], p[1, c]
     power = mu / (cube_root * cube_root)
     return (
         0.5 * power,
@@ -47,3 +51,13 @@ def derivatives(I1, J, cube_root, mu, kappa):  # type: ignore[no-untyped-def]
         -power / (3.0 * J),
         5.0 / 9.0 * power * I1 / (J * J) + kappa,
     )
+
+
+NEO_HOOKEAN: Final = Material(
+    "neo_hookean",
+    "invariants",
+    density,
+    derivatives,
+    lame_parameters,
+    "W = mu/2 (J^(-2/3) I1 - 3) + kappa/2 (J - 1)^2",
+)
