@@ -26,10 +26,10 @@ _CODES = (0, 1, 2, 3)
 # Names that commands write, as links to a file that is none of their business.
 TRAPS = (
     "report.html.partial",
-    "config.partial",
+    "config.toml.partial",
     "config.toml",
-    "summary.partial",
-    "metrics.partial",
+    "summary.json.partial",
+    "metrics.csv.partial",
     "run.owner.json",
     "run.lock",
     "export.csv",

@@ -89,7 +89,7 @@ def test_states_of_another_mesh_are_refused(run: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["config.partial", "summary.partial", "metrics.partial", "report.html.partial"]
+    "name", ["config.toml.partial", "summary.json.partial", "metrics.csv.partial", "report.html.partial"]
 )
 def test_links_in_a_run_folder_are_replaced_not_followed(run: Path, name: str) -> None:
     (run / name).symlink_to(run.parent / "precious")

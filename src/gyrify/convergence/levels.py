@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-import os
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -15,6 +14,7 @@ from gyrify.config import Config
 from gyrify.convergence.limit import RULE, Verdict, judge
 from gyrify.convergence.measured import metrics
 from gyrify.convergence.plan import Subject, contour_nodes, resolution
+from gyrify.store.files import whole_file
 
 
 @dataclass(frozen=True)
@@ -212,15 +212,16 @@ class Convergence:
         folder : Path
             An existing folder.
         """
-        partial = folder / "convergence.partial"
-        partial.write_text(json.dumps(self.as_dict(), indent=2, allow_nan=False) + "\n", encoding="utf-8")
-        os.replace(partial, folder / "convergence.json")
+        with whole_file(folder / "convergence.json") as partial:
+            partial.write_text(json.dumps(self.as_dict(), indent=2, allow_nan=False) + "\n", encoding="utf-8")
         rows = [_row(level, family.subject) for family in self.families for level in family.levels]
-        with partial.open("w", newline="", encoding="utf-8") as file:
+        with (
+            whole_file(folder / "convergence.csv") as partial,
+            partial.open("w", newline="", encoding="utf-8") as file,
+        ):
             writer = csv.DictWriter(file, fieldnames=list(rows[0]), lineterminator="\n")
             writer.writeheader()
             writer.writerows(rows)
-        os.replace(partial, folder / "convergence.csv")
 
 
 def _row(level: Level, subject: Subject) -> dict[str, Any]:

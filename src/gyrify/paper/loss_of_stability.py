@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
@@ -12,6 +11,7 @@ from gyrify.base.versions import solver_version
 from gyrify.config import Config
 from gyrify.errors import GyrifyError
 from gyrify.paper.simulations import Bench
+from gyrify.store.files import whole_file
 from gyrify.threshold import critical_growth
 
 FILE: Final = "stability.json"
@@ -48,9 +48,8 @@ def stability_thresholds(bench: Bench, configs: Sequence[Config], ends: Sequence
     }
     known |= {key: answer() for key, answer in begun.items()}
     if begun:
-        partial = path.with_suffix(".partial")
-        partial.write_text(json.dumps(known, indent=1, sort_keys=True) + "\n", encoding="utf-8")
-        os.replace(partial, path)
+        with whole_file(path) as partial:
+            partial.write_text(json.dumps(known, indent=1, sort_keys=True) + "\n", encoding="utf-8")
     return [known[key] for key in keys]
 
 

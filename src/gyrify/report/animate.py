@@ -14,11 +14,11 @@ from gyrify.config.run_sections import OutputField
 from gyrify.errors import ConfigError
 from gyrify.report.animate_files import durations, video_encoder, watched, write_gif, write_mp4
 from gyrify.report.animate_scene import Pixels, Scene
-from gyrify.report.figure_files import whole_file
 from gyrify.report.plot.field_colours import PAINTS
 from gyrify.report.plot.shown import Run, Shown, run_title, show
 from gyrify.store.disk_faults import storage_faults
 from gyrify.store.fields import CELL_FIELDS
+from gyrify.store.files import whole_file
 from gyrify.store.history import History
 
 __all__ = ["FIELDS", "animate"]

@@ -18,7 +18,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from gyrify.mesh import GREY, WHITE
 from gyrify.report.drawn_slice import Sheet, closed_sheet, periodic_sheet
-from gyrify.report.figure_files import whole_file
 from gyrify.report.layout import (
     COLOURS,
     LINE_MM,
@@ -30,6 +29,7 @@ from gyrify.report.layout import (
     scale_bar,
     write_header,
 )
+from gyrify.store.files import whole_file
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

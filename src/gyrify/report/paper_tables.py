@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Final
@@ -13,6 +12,7 @@ from gyrify.paper.cases import Case
 from gyrify.paper.observations import Observation, observations
 from gyrify.paper.row import Row
 from gyrify.paper.scoreboard import Scoreboard, ScoreRow
+from gyrify.store.files import whole_file
 
 SYMBOLS: Final = (
     "E is the stiffness ratio E_G/E_W, G the growth ratio G_G/G_W and T the initial thickness of the cortex; "
@@ -25,9 +25,8 @@ MARKS: Final = {True: "pass", False: "fail", None: "open"}
 def write_text(path: Path, text: str) -> None:
     """Write a file by atomic rename."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_name(path.name + ".partial")
-    partial.write_text(text, encoding="utf-8")
-    os.replace(partial, path)
+    with whole_file(path) as partial:
+        partial.write_text(text, encoding="utf-8")
 
 
 def scoreboard_csv(board: Scoreboard) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import os
 import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -15,7 +14,7 @@ from gyrify.config.run_sections import Metrics
 from gyrify.metrics import Measures
 from gyrify.metrics.measure import measure_valid
 from gyrify.run.validity.lengths import check_lengths
-from gyrify.store.files import fresh
+from gyrify.store.files import whole_file
 from gyrify.store.history import History
 from gyrify.store.state_numbers import state_number
 
@@ -182,9 +181,7 @@ def write_metrics(
 ) -> None:
     """Write ``metrics.csv``, one row per state, by atomic rename; parameters as in `metrics_rows`."""
     rows = metrics_rows(history, states, closing_radius=closing_radius, gyrus_prominence=gyrus_prominence)
-    partial = fresh(path.with_suffix(".partial"))
-    with partial.open("w", newline="", encoding="utf-8") as file:
+    with whole_file(path) as partial, partial.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, fieldnames=list(rows[0]), lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
-    os.replace(partial, path)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from pathlib import Path
@@ -29,7 +28,7 @@ from gyrify.run.validity import config_warnings, run_warnings
 from gyrify.run.validity.converged import convergence
 from gyrify.run.validity.expected import expected_onset
 from gyrify.solve.stability import StabilityChange
-from gyrify.store.files import fresh
+from gyrify.store.files import whole_file
 from gyrify.store.history import History
 
 __all__ = [
@@ -206,9 +205,8 @@ def _stability_note(history: History, n_gyri: int) -> str:
 
 def write_summary(summary: dict[str, Any], path: Path) -> None:
     """Write ``summary.json`` by atomic rename."""
-    partial = fresh(path.with_suffix(".partial"))
-    partial.write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
-    os.replace(partial, path)
+    with whole_file(path) as partial:
+        partial.write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def _without_infinities(value: Any) -> Any:

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
@@ -16,6 +19,30 @@ def fresh(path: Path) -> Path:
     """Path of a file that is about to be written anew: what has the name now, also a link, is taken away."""
     path.unlink(missing_ok=True)
     return path
+
+
+@contextmanager
+def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """Path to write to; it takes the place of ``path`` when all is written, and vanishes if anything fails.
+
+    Parameters
+    ----------
+    path : path-like
+        File to write.
+
+    Yields
+    ------
+    Path
+        Temporary file beside it, with the suffix ``.partial``.
+    """
+    target = Path(path)
+    partial = fresh(target.with_name(target.name + ".partial"))
+    try:
+        yield partial
+        os.replace(partial, target)
+    except BaseException:  # an interrupt, too, leaves no half of a file
+        partial.unlink(missing_ok=True)
+        raise
 
 
 def refuse_link(path: Path) -> None:

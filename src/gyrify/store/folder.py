@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import Final
 
 from gyrify.errors import HistoryError
 from gyrify.store.disk_faults import storage_faults
-from gyrify.store.files import fresh, refuse_link
+from gyrify.store.files import refuse_link, whole_file
 from gyrify.store.lock import run_lock
 
 JOURNAL: Final = "journal.sqlite"
@@ -95,9 +94,8 @@ def stored_folder(folder: Path) -> Iterator[str]:
 
 def write_config(folder: Path, config: str) -> None:
     """Write ``config.toml`` by atomic rename."""
-    partial = fresh(folder / "config.partial")
-    partial.write_text(config, encoding="utf-8")
-    os.replace(partial, folder / "config.toml")
+    with whole_file(folder / "config.toml") as partial:
+        partial.write_text(config, encoding="utf-8")
 
 
 def _leftovers(folder: Path) -> Iterator[Path]:

@@ -14,7 +14,6 @@ deflate filters. To be small and quick to write, it uses what these allow (see a
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -33,7 +32,7 @@ from gyrify.store.chunks import Layout, encoded
 from gyrify.store.derived import sha256_of
 from gyrify.store.disk_faults import storage_faults
 from gyrify.store.fields import CONTOUR_FIELDS, POINT_FIELDS, STATIC_FIELDS, UNITS, FieldMaker, StateFields
-from gyrify.store.files import fresh
+from gyrify.store.files import whole_file
 from gyrify.store.history import History
 
 FORMAT_VERSION: Final = (2, 2)
@@ -85,17 +84,12 @@ def write_vtkhdf(
     names = tuple(output.fields if fields is None else fields)
     steps = written_states(len(history), output.every if every is None else every)
     target = Path(path)
-    partial = target.with_name(target.name + ".partial")
     with storage_faults(target.parent, str(target)):
-        try:
-            with h5py.File(fresh(partial), "w", locking=False) as file:
-                root = file.create_group("VTKHDF")
-                _write_geometry(root, history, steps)
-                _write_fields(root, history, steps, names)
-            os.replace(partial, target)
-            _note_digest(history, target)
-        finally:
-            partial.unlink(missing_ok=True)
+        with whole_file(target) as partial, h5py.File(partial, "w", locking=False) as file:
+            root = file.create_group("VTKHDF")
+            _write_geometry(root, history, steps)
+            _write_fields(root, history, steps, names)
+        _note_digest(history, target)
 
 
 def _note_digest(history: History, target: Path) -> None:

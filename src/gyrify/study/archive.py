@@ -9,7 +9,6 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import os
 import re
 import struct
 import tokenize
@@ -26,7 +25,7 @@ from gyrify.config.words import shorten
 from gyrify.errors import HistoryError
 from gyrify.metrics.gyrification import index_of
 from gyrify.run.summary import measure_state
-from gyrify.store.files import fresh, read_facts, refuse_link
+from gyrify.store.files import read_facts, refuse_link, whole_file
 from gyrify.store.history import History
 
 FORMAT: Final = 1
@@ -256,6 +255,5 @@ def _read(path: Path) -> bytes:
 
 
 def _write(path: Path, data: bytes) -> None:
-    partial = fresh(path.with_name(path.name + ".partial"))
-    partial.write_bytes(data)
-    os.replace(partial, path)
+    with whole_file(path) as partial:
+        partial.write_bytes(data)

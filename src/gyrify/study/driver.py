@@ -12,7 +12,7 @@ from gyrify.base.arguments import Pathlike, as_path, whole_number
 from gyrify.base.pool import MAX_WORKERS
 from gyrify.errors import ConfigError
 from gyrify.store.disk_faults import storage_faults
-from gyrify.store.files import fresh, refuse_link
+from gyrify.store.files import refuse_link, whole_file
 from gyrify.store.lock import run_lock
 from gyrify.study.definition import Keep, Point, Study, as_study, require_keep
 from gyrify.study.executors import dask_executor
@@ -44,9 +44,8 @@ def run_study(
     study, target = as_study(study), as_path("folder", folder)
     with storage_faults(target, what="study"):
         target.mkdir(parents=True, exist_ok=True)
-        partial_file = fresh(target / f"{STUDY_FILE}.partial")
-        partial_file.write_text(study.to_toml(), encoding="utf-8")
-        os.replace(partial_file, target / STUDY_FILE)
+        with whole_file(target / STUDY_FILE) as partial:
+            partial.write_text(study.to_toml(), encoding="utf-8")
     return run_points(study.points(), target, **{"keep": study.keep, **options})
 
 

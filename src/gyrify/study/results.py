@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -15,7 +14,7 @@ from gyrify.errors import ConfigError, HistoryError
 from gyrify.metrics.quantities import flat, quantities
 from gyrify.phenotype import classify, grown_thickness
 from gyrify.run.units import unit_of
-from gyrify.store.files import fresh
+from gyrify.store.files import whole_file
 from gyrify.study.archive import Record
 from gyrify.study.definition import Point, value_of
 from gyrify.study.parameter import require_variable
@@ -70,12 +69,11 @@ def write_results(folder: Path, points: Sequence[Point], records: Mapping[str, R
     import pyarrow.parquet as pq
 
     known = [point for point in points if point.key in records]
-    partial = fresh(folder / f"{RESULTS}.partial")
-    pq.write_table(results_table(known, records), partial, compression="zstd")
-    os.replace(partial, folder / RESULTS)
+    with whole_file(folder / RESULTS) as partial:
+        pq.write_table(results_table(known, records), partial, compression="zstd")
     lines = [f"{point.key},{records[point.key].wall_s:.4f}\n" for point in known]
-    partial.write_text("".join(["key,wall_s\n", *lines]), encoding="utf-8")
-    os.replace(partial, folder / TIMINGS)
+    with whole_file(folder / TIMINGS) as partial:
+        partial.write_text("".join(["key,wall_s\n", *lines]), encoding="utf-8")
 
 
 def results_table(points: Sequence[Point], records: Mapping[str, Record]) -> Table:

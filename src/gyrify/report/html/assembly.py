@@ -9,14 +9,13 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, Final
 
 from gyrify.store.disk_faults import storage_faults
-from gyrify.store.files import fresh
+from gyrify.store.files import whole_file
 
 STYLES: Final = ("base.css", "viewer.css", "sections.css", "study.css")
 _VIEWER: Final = (
@@ -105,13 +104,8 @@ def write_page(text: str, path: Path) -> None:
     HistoryError
         If the file cannot be written.
     """
-    partial = path.with_name(path.name + ".partial")
-    with storage_faults(path.parent, str(path)):
-        try:
-            fresh(partial).write_text(text, encoding="utf-8", newline="\n")
-            os.replace(partial, path)
-        finally:
-            partial.unlink(missing_ok=True)
+    with storage_faults(path.parent, str(path)), whole_file(path) as partial:
+        partial.write_text(text, encoding="utf-8", newline="\n")
 
 
 def _joined(folder: str, names: Iterable[str]) -> str:
