@@ -156,13 +156,19 @@ def folds_about(
     prominence: float,
     samples: int,
     hull: shapely.Polygon | None = None,
+    *,
+    earlier: bool = False,
 ) -> Folds:
-    """`find_folds` about a shape that is known already; without a hull, bumps without sulci count too."""
+    """`find_folds` about a shape that is known already; without a hull, bumps without sulci count too.
+
+    ``earlier`` counts crowns that follow the points of the contour, as gyrify 0.1.0 did at first.
+    """
     points = resample(contour, samples, keep_vertices=True)
     displacement = shape.displacement(points)
     extrema = periodic_extrema(displacement, prominence)
     numbers = vertex_numbers(contour, samples)
-    crowns, fundi, n_sawteeth = without_sawteeth(displacement, numbers, len(contour), *extrema)
+    found = (*extrema, 0) if earlier else without_sawteeth(displacement, numbers, len(contour), *extrema)
+    crowns, fundi, n_sawteeth = found
     if hull is not None and not has_sulcus(points[fundi], hull, prominence):
         crowns = fundi = np.empty(0, dtype=np.int64)
     return Folds(points, displacement, crowns, fundi, n_sawteeth)

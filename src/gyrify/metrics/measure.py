@@ -93,8 +93,8 @@ def measure_valid(
 ) -> Measures:
     """`measure` lines that are known to be contours, such as those of a stored state.
 
-    ``earlier`` measures as gyrify 0.1.0 did at first: bumps without sulci count as gyri, and the index by the
-    closing exceeds the hull's by what chords miss of arcs.
+    ``earlier`` measures as gyrify 0.1.0 did at first: bumps without sulci and crowns that follow the points of
+    the contour count as gyri, and the index by the closing exceeds the hull's by what chords miss of arcs.
     """
     closing_radius = require_positive("closing_radius", closing_radius)
     gyrus_prominence, samples = require_detectable(gyrus_prominence, samples)
@@ -161,7 +161,9 @@ class Ring:
     def folds(self) -> Folds:
         hull = None if self.earlier else self.hull
         smooth = shape_of_hull(self.hull)
-        return folds_about(smooth, self.contour, self.gyrus_prominence, self.samples, hull)
+        return folds_about(
+            smooth, self.contour, self.gyrus_prominence, self.samples, hull, earlier=self.earlier
+        )
 
     @cached_property
     def depth(self) -> FloatArray:

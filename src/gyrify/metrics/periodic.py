@@ -94,7 +94,7 @@ class Strip:
 
     @cached_property
     def folds(self) -> Folds:
-        return _folds(self.line, self.period, self.gyrus_prominence, self.samples)
+        return _folds(self.line, self.period, self.gyrus_prominence, self.samples, earlier=self.earlier)
 
     @cached_property
     def depth(self) -> FloatArray:
@@ -126,7 +126,9 @@ def _arc(line: FloatArray, period: float) -> FloatArray:
     return np.concatenate([[0.0], np.cumsum(np.hypot(edges[:, 0], edges[:, 1]))])
 
 
-def _folds(line: FloatArray, period: float, prominence: float, samples: int) -> Folds:
+def _folds(
+    line: FloatArray, period: float, prominence: float, samples: int, *, earlier: bool = False
+) -> Folds:
     """Return gyri and sulci: extrema of the height above the mean level."""
     arc = _arc(line, period)
     at = np.sort(np.concatenate([np.arange(samples) * (arc[-1] / samples), arc[1:-1]]))
@@ -136,7 +138,8 @@ def _folds(line: FloatArray, period: float, prominence: float, samples: int) -> 
     level = float(np.sum(np.diff(arc) * 0.5 * (height[1:] + height[:-1])) / arc[-1])
     above = points[:, 1] - level
     vertex = np.interp(at, arc, np.arange(len(arc)))
-    found = without_sawteeth(above, vertex, len(line), *periodic_extrema(above, prominence))
+    extrema = periodic_extrema(above, prominence)
+    found = (*extrema, 0) if earlier else without_sawteeth(above, vertex, len(line), *extrema)
     return Folds(points, above, *found)
 
 
