@@ -19,7 +19,7 @@ from gyrify.paper.index import STANDARD_INDEX
 from gyrify.paper.reading import Mechanics, Reading, point_of
 from gyrify.paper.reproduce import known_rows
 from gyrify.paper.scoreboard import score
-from gyrify.paper.simulations import Bench
+from gyrify.paper.simulations import Simulations
 from gyrify.theory import Annulus, critical_growth_ratio
 
 DATA = Path(__file__).with_name("exclusion.json")
@@ -71,7 +71,7 @@ def mechanics_of(mesh: str) -> Iterator[tuple[str, Mechanics]]:
                 yield f"{course} {exponent:g} {number:g}", one
 
 
-def folded(bench: Bench, mesh: str) -> None:
+def folded(bench: Simulations, mesh: str) -> None:
     """Which observations hold, for every reading on a mesh; those of one exponent at a time."""
     base = Config.preset("wang2019")
     todo = [(key, one) for key, one in mechanics_of(mesh) if key not in known().get(mesh, {})]
@@ -110,7 +110,7 @@ def exact() -> None:
 def main(folder: Path, meshes: list[str]) -> None:
     """Compute what is not known."""
     exact()
-    with Bench(folder, 2) as bench:
+    with Simulations(folder, 2) as bench:
         for mesh in meshes or MESHES:
             folded(bench, mesh)
 

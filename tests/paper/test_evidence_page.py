@@ -7,7 +7,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
-from fake_bench import FakeBench
+from fake_simulations import FakeBench
 
 from gyrify.config import Config
 from gyrify.paper.ensemble import repeat
@@ -31,9 +31,9 @@ def script() -> ModuleType:
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("paper")
-    bench = FakeBench(workers=2)
-    found = search(bench, Config(), rounds=1)
-    ensembles = [repeat(bench, Config(), c.reading, stability=False) for c in found.fitted.ranked[:2]]
+    simulations = FakeBench(workers=2)
+    found = search(simulations, Config(), rounds=1)
+    ensembles = [repeat(simulations, Config(), c.reading, stability=False) for c in found.fitted.ranked[:2]]
     write_readings(found, ensembles, out)
     write_text(out / "best-1" / "scoreboard.md", scoreboard_markdown(ensembles[0].members[0].scoreboard))
     return out

@@ -14,7 +14,7 @@ from gyrify.metrics import gyrification_index
 from gyrify.paper import Case
 from gyrify.paper.index import INDICES, PEN, STANDARD_INDEX, Index, picture_index, require_gi
 from gyrify.paper.reading import Mechanics, Reading, point_of
-from gyrify.paper.simulations import Bench
+from gyrify.paper.simulations import Simulations
 
 COARSE = {
     "mesh.n_around": 96,
@@ -51,12 +51,12 @@ def test_other_radii_agree_with_a_run_that_has_them(tmp_path: Path) -> None:
     base = Config().with_overrides(COARSE)
     other = base.with_overrides({"metrics.closing_radius": 7.0})
     mechanics, case = Mechanics.of(base), Case()
-    with Bench(tmp_path) as bench:
+    with Simulations(tmp_path) as simulations:
         points = [point_of(each, mechanics, case, 0) for each in (base, other)]
-        bench.run(points)
-        rows = {gi: bench.row(points[0], gi) for gi in INDICES}
+        simulations.run(points)
+        rows = {gi: simulations.row(points[0], gi) for gi in INDICES}
         assert rows[Index("closing", 7.0)] is not None
-        told = rows[Index("closing", 7.0)], bench.row(points[1], Index("closing", 7.0))
+        told = rows[Index("closing", 7.0)], simulations.row(points[1], Index("closing", 7.0))
     assert told[0] is not None
     assert told[1] is not None
     assert (told[0].gi, told[0].depth, told[0].label) == (told[1].gi, told[1].depth, told[1].label)

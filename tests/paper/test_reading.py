@@ -6,7 +6,7 @@ from statistics import fmean, stdev
 from typing import get_args
 
 import pytest
-from fake_bench import FakeBench
+from fake_simulations import FakeBench
 
 from gyrify.config import Config
 from gyrify.paper import Case, all_cases
@@ -54,9 +54,9 @@ def test_every_case_is_another_run() -> None:
 
 
 def test_the_index_of_the_reading_is_used_in_every_row() -> None:
-    bench = FakeBench()
+    simulations = FakeBench()
     closing, hull = (
-        reproduce(bench, Config(), Reading(Mechanics(), Index(gi)), stability=False)
+        reproduce(simulations, Config(), Reading(Mechanics(), Index(gi)), stability=False)
         for gi in get_args(GiDefinition)[:2]
     )
     case = Case(EQUAL)
@@ -65,8 +65,8 @@ def test_the_index_of_the_reading_is_used_in_every_row() -> None:
 
 
 def test_several_seeds() -> None:
-    bench = FakeBench()
-    found = repeat(bench, Config(), Reading(), stability=False)
+    simulations = FakeBench()
+    found = repeat(simulations, Config(), Reading(), stability=False)
     names = {entry.name: entry for entry in found.spreads()}
     gi = [member.rows[Case(EQUAL)].gi for member in found.members]
     assert len(set(gi)) == len(SEEDS)
@@ -85,8 +85,8 @@ def test_several_seeds() -> None:
 
 
 def test_ensembles_are_put_in_order_by_their_mean() -> None:
-    bench = FakeBench()
-    found = [repeat(bench, Config(), Reading(one), stability=False) for one in SEVERAL]
+    simulations = FakeBench()
+    found = [repeat(simulations, Config(), Reading(one), stability=False) for one in SEVERAL]
     ordered = best_first(found)
     means = [one.score.mean for one in ordered]
     assert means == sorted(means, reverse=True)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fake_bench import FakeBench
+from fake_simulations import FakeBench
 from made_up import perfect, spoilt
 
 from gyrify.config import Config
@@ -112,9 +112,9 @@ def test_a_figure_has_a_panel_per_case_and_says_what_is_missing(layout: object) 
 
 def test_ranking(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("gyrify.paper.contender.INDICES", INDICES[::3])
-    bench = FakeBench(workers=2)
-    found = search(bench, Config(), rounds=2)
-    ensembles = [repeat(bench, Config(), found.fitted.ranked[0].reading, (0, 3), stability=False)]
+    simulations = FakeBench(workers=2)
+    found = search(simulations, Config(), rounds=2)
+    ensembles = [repeat(simulations, Config(), found.fitted.ranked[0].reading, (0, 3), stability=False)]
     files = write_readings(found, ensembles, tmp_path)
     assert {file.name for file in files} == {"readings.csv", "readings.md", "readings.html", "seeds.csv"}
     rows = list(csv.DictReader(io.StringIO(readings_csv(found))))

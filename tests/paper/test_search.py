@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import optuna
 import pytest
-from fake_bench import FakeBench
+from fake_simulations import FakeBench
 
 from gyrify.config import Config
 from gyrify.paper.candidate import Candidate
@@ -50,10 +50,10 @@ def random_mechanics(n: int, *, is_fitted: bool = True) -> list[Mechanics]:
 
 def exhausted(mechanics: Mechanics) -> dict[object, list[int]]:
     """Observations that hold with each choosing seed, by index, with everything run."""
-    bench = FakeBench()
+    simulations = FakeBench()
     return {
         gi: [
-            reproduce(bench, BASE, Reading(mechanics, gi), seed=seed, stability=False).scoreboard.passed
+            reproduce(simulations, BASE, Reading(mechanics, gi), seed=seed, stability=False).scoreboard.passed
             for seed in CHOOSING
         ]
         for gi in FEW
@@ -61,11 +61,11 @@ def exhausted(mechanics: Mechanics) -> dict[object, list[int]]:
 
 
 def raced(contender: Contender) -> FakeBench:
-    bench = FakeBench()
+    simulations = FakeBench()
     while points := contender.ask():
-        bench.run(points)
-        contender.learn(bench)
-    return bench
+        simulations.run(points)
+        contender.learn(simulations)
+    return simulations
 
 
 def test_what_is_among_the_best_has_the_score_of_everything_run(found: Search) -> None:
@@ -80,14 +80,14 @@ def test_what_is_among_the_best_has_the_score_of_everything_run(found: Search) -
 @pytest.mark.parametrize("mechanics", [*KNOWN, *random_mechanics(8)], ids=str)
 def test_no_index_would_have_been_better(mechanics: Mechanics) -> None:
     contender = Contender(BASE, mechanics, "random", True, level=0.0)
-    bench = raced(contender)
+    simulations = raced(contender)
     if not contender.impossible:
         assert contender.is_complete
         first = contender.candidates[0].boards
         near = [gi for gi in FEW if first[gi].passed >= max(b.passed for b in first.values()) - 1]
         known = exhausted(mechanics)
         assert contender.passed == pytest.approx(max(sum(known[gi]) for gi in near) / len(CHOOSING))
-        assert len(bench.asked) > 30
+        assert len(simulations.asked) > 30
 
 
 def test_an_index_that_is_behind_with_one_seed_may_lead_in_the_mean() -> None:
@@ -130,13 +130,13 @@ def test_given_up_means_not_above_the_level(mechanics: Mechanics) -> None:
     if not contender.ask():
         assert contender.impossible
         return
-    bench = raced(contender)
+    simulations = raced(contender)
     whole = FakeBench()
     for seed in CHOOSING:
         reproduce(whole, BASE, Reading(mechanics), seed=seed, stability=False)
     if contender.is_complete:
         return
-    assert len(bench.asked) < len(whole.asked)
+    assert len(simulations.asked) < len(whole.asked)
     known = exhausted(mechanics)
     seeds = len(contender.candidates)
     if seeds == 1:
@@ -158,7 +158,7 @@ def test_the_search_is_the_same_with_any_number_of_workers(found: Search) -> Non
 
 
 def test_it_stops_in_time_and_goes_on(found: Search) -> None:
-    bench, seen = FakeBench(), list[SearchProgress]()
+    simulations, seen = FakeBench(), list[SearchProgress]()
 
     class Limited(FakeBench):
         def run(self, points: Sequence[Point]) -> None:
@@ -166,15 +166,15 @@ def test_it_stops_in_time_and_goes_on(found: Search) -> None:
             if len(self.asked) > 200:
                 raise KeyboardInterrupt
 
-    stopped = search(bench, BASE, rounds=ROUNDS, until=time.perf_counter())
-    assert (stopped.is_complete, stopped.rounds, bench.asked) == (False, 0, [])
+    stopped = search(simulations, BASE, rounds=ROUNDS, until=time.perf_counter())
+    assert (stopped.is_complete, stopped.rounds, simulations.asked) == (False, 0, [])
     limited = Limited()
     with pytest.raises(KeyboardInterrupt):
         search(limited, BASE, rounds=ROUNDS)
-    bench.records = dict(limited.records)
-    done = search(bench, BASE, rounds=ROUNDS, tell=seen.append)
+    simulations.records = dict(limited.records)
+    done = search(simulations, BASE, rounds=ROUNDS, tell=seen.append)
     assert readings_csv(done) == readings_csv(found)
-    assert not {point.key for point in bench.asked} & {point.key for point in limited.asked}
+    assert not {point.key for point in simulations.asked} & {point.key for point in limited.asked}
     assert (seen[0].round, seen[-1].round, seen[-1].rounds) == (0, ROUNDS, ROUNDS)
     assert seen[-1].best == max(c.passed for c in done.fitted.ranked if c.is_complete)
 
@@ -242,10 +242,10 @@ def test_a_mechanics_can_be_proposed_again(mechanics: Mechanics) -> None:
 
 
 def test_a_failed_run_fails_what_it_decides() -> None:
-    bench, one = FakeBench(), Candidate(BASE, Mechanics(number=6.0))
+    simulations, one = FakeBench(), Candidate(BASE, Mechanics(number=6.0))
     while points := one.ask():
-        bench.run(points)
-        one.learn(bench)
+        simulations.run(points)
+        one.learn(simulations)
     rows = {row.id: row for row in one.boards[STANDARD_INDEX].rows}
     assert rows["P11"].passed is False
     assert "Stalled." in rows["P11"].note
@@ -260,10 +260,10 @@ def test_both_standard_slices_are_run_first() -> None:
 def test_whole_observations_are_worth_more_than_many_that_nearly_hold() -> None:
     one = Candidate(BASE, Mechanics())
     assert one.value(STANDARD_INDEX) == pytest.approx(2 + 16 * 0.25)
-    bench = FakeBench()
+    simulations = FakeBench()
     while points := one.ask():
-        bench.run(points)
-        one.learn(bench)
+        simulations.run(points)
+        one.learn(simulations)
     for gi in INDICES:
         passed = one.boards[gi].passed
         assert passed <= one.value(gi) <= passed + 0.5 * (18 - passed)

@@ -7,13 +7,13 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Generator, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor
 from concurrent.futures import wait as await_futures
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from multiprocessing.connection import wait
 from multiprocessing.synchronize import Event
-from typing import Final, Self, TypeVar
+from typing import Any, Final, Self, TypeVar
 
 from gyrify.base.signals import ending_signals
 from gyrify.errors import GyrifyError
@@ -68,12 +68,12 @@ def each(
     waiting = list(reversed(items))
     while waiting:
         begun: dict[Future[Result], Item] = {}
-        with _Crew(min(workers, len(waiting))) as crew:
+        with Crew(min(workers, len(waiting))) as crew:
             try:
                 while waiting or begun:
                     while waiting and len(begun) <= crew.size:  # one more than at work: none is ever idle
                         item = waiting.pop()
-                        begun[crew.submit(work, item)] = item
+                        begun[crew.submit(_work, work, item)] = item
                     for future in await_futures(begun, return_when=FIRST_COMPLETED).done:
                         result = future.result()
                         del begun[future]
@@ -86,21 +86,22 @@ def each(
 
 def _alone(work: Work[Item, Result], item: Item, lost: Callable[[Item], Result]) -> Result:
     """Work on an item in a process that works on nothing else."""
-    with _Crew(1) as crew:
+    with Crew(1) as crew:
         try:
-            return crew.submit(work, item).result()
+            found: Result = crew.submit(_work, work, item).result()
+            return found
         except BrokenProcessPool:
             crew.require_begun()
             return lost(item)
 
 
-class _Crew:
-    """Processes inside a ``with`` block, at whose end they are asked to end at a safe place."""
+class Crew(Executor):
+    """Processes of one thread each in a ``with`` block; at its end they are asked to end at a safe place."""
 
     def __init__(self, size: int) -> None:
         self.size = size
         context = multiprocessing.get_context("spawn")
-        with deaf_children():  # Python begins a process that looks after these
+        with _deaf_children():  # Python begins a process that looks after these
             self._stop, self._begun = context.Event(), context.Event()
         self._pool = ProcessPoolExecutor(size, context, _begin_worker, (self._stop, self._begun))
 
@@ -111,11 +112,11 @@ class _Crew:
         self._stop.set()  # only an interrupt or an error finds work that still goes on
         self._pool.shutdown(wait=True, cancel_futures=True)
 
-    def submit(self, work: Work[Item, Result], item: Item) -> Future[Result]:
-        """Let the next idle process work on an item; it begins processes while there are too few."""
+    def submit(self, work: Callable[..., Result], /, *arguments: Any, **options: Any) -> Future[Result]:
+        """Let the next idle process work; it begins processes while there are too few."""
         try:
-            with _one_thread(), deaf_children():
-                return self._pool.submit(_work, work, item)
+            with _one_thread(), _deaf_children():
+                return self._pool.submit(work, *arguments, **options)
         except BrokenProcessPool as broken:  # known only now; it is to be met where results are
             future: Future[Result] = Future()
             future.set_exception(broken)
@@ -172,7 +173,7 @@ def _note(*_: object) -> None:
 
 
 @contextmanager
-def deaf_children() -> Iterator[None]:
+def _deaf_children() -> Iterator[None]:
     """Hold signals back while processes begin: they inherit that, and lay it down once they are prepared."""
     if not hasattr(signal, "pthread_sigmask"):
         yield

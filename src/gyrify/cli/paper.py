@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from gyrify.paper.reading import Reading
     from gyrify.paper.reproduce import Reproduction
     from gyrify.paper.search import Search
-    from gyrify.paper.simulations import Bench
+    from gyrify.paper.simulations import Simulations
 
 PRESET = "wang2019"
 _MORE_SEEDS = "the best three, with and without fitted constants, with five seeds"
@@ -70,7 +70,7 @@ def paper(
         Show no progress.
     """
     from gyrify.cli.study_progress import progress_of_points
-    from gyrify.paper.simulations import Bench
+    from gyrify.paper.simulations import Simulations
 
     begun = time.perf_counter()
     base, reading = _reading_of(preset, set_, gi)
@@ -78,10 +78,10 @@ def paper(
     _require(processes, minutes)
     seen = progress_of_points(quiet or readings)
     try:
-        with seen as observer, Bench(out, processes, observer) as bench:
+        with seen as observer, Simulations(out, processes, observer) as simulations:
             if readings:
-                return _readings(bench, base, begun, minutes, json, quiet)
-            return _one(bench, base, reading, begun, seed, json)
+                return _readings(simulations, base, begun, minutes, json, quiet)
+            return _one(simulations, base, reading, begun, seed, json)
     except KeyboardInterrupt:
         return _interrupted(json)
 
@@ -116,32 +116,36 @@ def _require(workers: int, minutes: float) -> None:
         raise ConfigError(f"minutes = {minutes:g} is out of range: it must be >= 0.", "Try 75.")
 
 
-def _one(bench: Bench, base: Config, reading: Reading, begun: float, seed: int, json: bool) -> int:
+def _one(
+    simulations: Simulations, base: Config, reading: Reading, begun: float, seed: int, json: bool
+) -> int:
     """One reading, one seed."""
     from gyrify.paper.reproduce import reproduce
     from gyrify.report.paper_files import write_report
 
-    found = reproduce(bench, base, reading, seed=seed)
-    bench.write()
-    write_report(found, bench.stored, bench.folder)
+    found = reproduce(simulations, base, reading, seed=seed)
+    simulations.write()
+    write_report(found, simulations.stored, simulations.folder)
     wall_s = time.perf_counter() - begun
     from gyrify.study.outcome import warnings_of
 
     warnings = [
-        f"{len(keys)} of {len(bench.records)} runs: {said}"
-        for said, keys in warnings_of(bench.records).items()
+        f"{len(keys)} of {len(simulations.records)} runs: {said}"
+        for said, keys in warnings_of(simulations.records).items()
     ]
     warn(warnings)
     if json:
         print_json({**found.scoreboard.as_dict(wall_s), "warnings": warnings})
     else:
         _show(found)
-        say(f"{len(bench.records)} runs, {bench.computed} of them now, {wall_s:.0f} s.")
-        say(f"Files in {bench.folder}.")
+        say(f"{len(simulations.records)} runs, {simulations.computed} of them now, {wall_s:.0f} s.")
+        say(f"Files in {simulations.folder}.")
     return COMPLETED if any(row.is_complete for row in found.rows.values()) else FAILED
 
 
-def _readings(bench: Bench, base: Config, begun: float, minutes: float, json: bool, quiet: bool) -> int:
+def _readings(
+    simulations: Simulations, base: Config, begun: float, minutes: float, json: bool, quiet: bool
+) -> int:
     """Search, rank, and repeat the best with fresh seeds, which put them in order."""
     from gyrify.paper.ensemble import best_first, repeat
     from gyrify.paper.search import BEST, SearchProgress, search
@@ -154,19 +158,24 @@ def _readings(bench: Bench, base: Config, begun: float, minutes: float, json: bo
             done = f"round {now.round} of {now.rounds}, {now.readings} readings, {now.runs} runs"
             complain(f"{spent:.0f} min, {done}; best: {now.best:.3g} hold, {now.reading}")
 
-    found = search(bench, base, until=begun + 60 * minutes, tell=tell)
-    write_readings(found, (), bench.folder)
+    found = search(simulations, base, until=begun + 60 * minutes, tell=tell)
+    write_readings(found, (), simulations.folder)
     if not quiet:
         complain(f"Now {_MORE_SEEDS}." if found.is_complete else "Time is over: no seeds yet.")
     ensembles = []
     for league in (found.fitted, found.free) if found.is_complete else ():
         chosen = [c for c in league.ranked if c.is_complete][:BEST]
-        ensembles += best_first(repeat(bench, base, c.reading, stability=False) for c in chosen)
-    if bench.records:
-        bench.write()
-    files = write_readings(found, ensembles, bench.folder)
+        ensembles += best_first(repeat(simulations, base, c.reading, stability=False) for c in chosen)
+    if simulations.records:
+        simulations.write()
+    files = write_readings(found, ensembles, simulations.folder)
     for number, ensemble in enumerate(ensembles, start=1):
-        write_report(ensemble.members[0], bench.stored, bench.folder / f"best-{number}", figures=number == 1)
+        write_report(
+            ensemble.members[0],
+            simulations.stored,
+            simulations.folder / f"best-{number}",
+            figures=number == 1,
+        )
     document = _ranking(found, ensembles, time.perf_counter() - begun)
     if json:
         print_json(document)

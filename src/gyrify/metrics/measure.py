@@ -93,7 +93,7 @@ def measure_valid(
 ) -> Measures:
     """`measure` lines that are known to be contours, such as those of a stored state.
 
-    ``earlier`` measures as gyrify 0.1.0 did at first: bumps without sulci and crowns that follow the points of
+    ``earlier`` measures as gyrify 0.1.0 did: bumps without sulci and crowns that follow the points of
     the contour count as gyri, and the index by the closing exceeds the hull's by what chords miss of arcs.
     """
     closing_radius = require_positive("closing_radius", closing_radius)

@@ -12,7 +12,7 @@ from gyrify.paper.index import INDICES, Index
 from gyrify.paper.reading import Mechanics, Reading, point_of
 from gyrify.paper.row import Row
 from gyrify.paper.scoreboard import Scoreboard, score
-from gyrify.paper.simulations import Bench
+from gyrify.paper.simulations import Simulations
 from gyrify.study import Point
 
 _STAGE: Final = {
@@ -104,10 +104,10 @@ class Candidate:
         self._asked |= points
         return list(points.values())
 
-    def learn(self, bench: Bench) -> None:
+    def learn(self, simulations: Simulations) -> None:
         """Take in what has become known of the runs it has asked for."""
         for case, point in list(self._asked.items()):
-            found = {gi: bench.row(point, gi) for gi in self.indices}
+            found = {gi: simulations.row(point, gi) for gi in self.indices}
             for gi, row in found.items():
                 if row is not None:
                     self.rows[gi][case] = row

@@ -10,7 +10,7 @@ from gyrify.paper.candidate import Candidate
 from gyrify.paper.cases import EQUAL, SOFT, Case
 from gyrify.paper.index import INDICES, Index
 from gyrify.paper.reading import Mechanics, Reading
-from gyrify.paper.simulations import Bench
+from gyrify.paper.simulations import Simulations
 from gyrify.study import Point
 
 Origin = Literal["known", "random", "surrogate", "neighbour"]
@@ -119,10 +119,10 @@ class Contender:
         best = [gi for gi in hopeful if self._bound(gi) == most]
         return [point for candidate in self.candidates for point in candidate.ask(best)]
 
-    def learn(self, bench: Bench) -> None:
+    def learn(self, simulations: Simulations) -> None:
         """Take in what has become known."""
         for candidate in self.candidates:
-            candidate.learn(bench)
+            candidate.learn(simulations)
 
     def _passed(self, gi: Index) -> float:
         return fmean(candidate.boards[gi].passed for candidate in self.candidates)

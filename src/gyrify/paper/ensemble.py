@@ -13,7 +13,7 @@ from gyrify.paper.contender import CHOOSING
 from gyrify.paper.reading import Reading
 from gyrify.paper.reproduce import Reproduction, reproduce
 from gyrify.paper.row import Row
-from gyrify.paper.simulations import Bench
+from gyrify.paper.simulations import Simulations
 from gyrify.paper.visible_folds import visible_bracket
 
 SEEDS = (0, 1, 2, 3, 4)
@@ -119,13 +119,18 @@ class Ensemble:
 
 
 def repeat(
-    bench: Bench, base: Config, reading: Reading, seeds: Sequence[int] = SEEDS, *, stability: bool = True
+    simulations: Simulations,
+    base: Config,
+    reading: Reading,
+    seeds: Sequence[int] = SEEDS,
+    *,
+    stability: bool = True,
 ) -> Ensemble:
     """Reproduce the paper with several seeds.
 
     Parameters
     ----------
-    bench : Bench
+    simulations : Simulations
         Who computes.
     base : Config
         Everything that no reading changes.
@@ -140,7 +145,7 @@ def repeat(
     -------
     Ensemble
     """
-    members = [reproduce(bench, base, reading, seed=seed, stability=stability) for seed in seeds]
+    members = [reproduce(simulations, base, reading, seed=seed, stability=stability) for seed in seeds]
     return Ensemble(reading, tuple(members))
 
 

@@ -10,7 +10,7 @@ from typing import Final
 from gyrify.base.versions import solver_version
 from gyrify.config import Config
 from gyrify.errors import GyrifyError
-from gyrify.paper.simulations import Bench
+from gyrify.paper.simulations import Simulations
 from gyrify.store.files import whole_file
 from gyrify.threshold import critical_growth
 
@@ -21,12 +21,14 @@ HIGHEST: Final = 4.0
 _DENSITY: Final = 5.0
 
 
-def stability_thresholds(bench: Bench, configs: Sequence[Config], ends: Sequence[float]) -> list[str]:
-    """Critical growth ratios of some slices, in words; kept in ``stability.json`` of the bench's folder.
+def stability_thresholds(
+    simulations: Simulations, configs: Sequence[Config], ends: Sequence[float]
+) -> list[str]:
+    """Critical growth ratios of some slices, in words; kept in ``stability.json`` of their folder.
 
     Parameters
     ----------
-    bench : Bench
+    simulations : Simulations
         Who computes.
     configs : sequence of Config
         The slices.
@@ -38,11 +40,11 @@ def stability_thresholds(bench: Bench, configs: Sequence[Config], ends: Sequence
     list of str
         Such as ``1.810 (mode 16)``.
     """
-    path = bench.folder / FILE
+    path = simulations.folder / FILE
     known = _read(path)
     keys = [f"{solver_version()}:{c.config_hash}:{end:.6g}" for c, end in zip(configs, ends, strict=True)]
     begun = {
-        key: bench.call(_critical, config, end)
+        key: simulations.call(_critical, config, end)
         for key, config, end in zip(keys, configs, ends, strict=True)
         if key not in known
     }

@@ -13,7 +13,7 @@ from gyrify.paper.loss_of_stability import HIGHEST, stability_thresholds
 from gyrify.paper.reading import Reading, point_of
 from gyrify.paper.row import Row
 from gyrify.paper.scoreboard import Scoreboard, score
-from gyrify.paper.simulations import Bench
+from gyrify.paper.simulations import Simulations
 from gyrify.paper.visible_folds import (
     higher_levels,
     next_higher,
@@ -49,13 +49,13 @@ class Reproduction:
 
 
 def reproduce(
-    bench: Bench, base: Config, reading: Reading, *, seed: int = 0, stability: bool = True
+    simulations: Simulations, base: Config, reading: Reading, *, seed: int = 0, stability: bool = True
 ) -> Reproduction:
     """Run whatever of the paper's simulations is not known yet, and compare.
 
     Parameters
     ----------
-    bench : Bench
+    simulations : Simulations
         Who computes.
     base : Config
         Everything that no reading changes.
@@ -75,29 +75,29 @@ def reproduce(
     GyrifyError
         If nothing can compute.
     """
-    rows = known_rows(bench, base, reading, all_cases(), seed)
+    rows = known_rows(simulations, base, reading, all_cases(), seed)
     todo: list[Case] = list(all_cases())
     while todo:
-        bench.run([point_of(base, reading.mechanics, case, seed) for case in todo])
-        rows |= known_rows(bench, base, reading, todo, seed)
+        simulations.run([point_of(base, reading.mechanics, case, seed) for case in todo])
+        rows |= known_rows(simulations, base, reading, todo, seed)
         searches = (next_thresholds, next_higher, next_states)
         found = dict.fromkeys(case for e in BOTH for search in searches for case in search(rows, e))
         todo = [case for case in found if case not in rows]
     remarks = {name: higher_levels(rows, e) for name, e in _ROWS.items()}
     if stability:
-        lost = _stability(bench, base, reading, seed, rows)
+        lost = _stability(simulations, base, reading, seed, rows)
         remarks = {name: ". ".join(filter(None, (remarks[name], lost[name]))) for name in _ROWS}
     return Reproduction(reading, rows, score(rows, str(reading), remarks), seed)
 
 
 def known_rows(
-    bench: Bench, base: Config, reading: Reading, cases: Iterable[Case], seed: int
+    simulations: Simulations, base: Config, reading: Reading, cases: Iterable[Case], seed: int
 ) -> dict[Case, Row]:
     """Results that are known of some cases.
 
     Parameters
     ----------
-    bench : Bench
+    simulations : Simulations
         Who remembers.
     base, reading, seed
         As of `reproduce`.
@@ -111,21 +111,21 @@ def known_rows(
     found = {}
     for case in cases:
         point = point_of(base, reading.mechanics, case, seed)
-        row = bench.row(point, reading.gi)
+        row = simulations.row(point, reading.gi)
         if row is not None:
             found[case] = row
     return found
 
 
 def _stability(
-    bench: Bench, base: Config, reading: Reading, seed: int, rows: dict[Case, Row]
+    simulations: Simulations, base: Config, reading: Reading, seed: int, rows: dict[Case, Row]
 ) -> dict[str, str]:
     """Remarks on the rows of thresholds; stability is lost before folds are seen."""
     configs = [point_of(base, reading.mechanics, Case(e), seed).config for e in _ROWS.values()]
     seen = [visible_bracket(rows, e) for e in _ROWS.values()]
     ends = [HIGHEST if bracket is None else min(1.1 * bracket.high, HIGHEST) for bracket in seen]
     try:
-        found = stability_thresholds(bench, configs, ends)
+        found = stability_thresholds(simulations, configs, ends)
     except GyrifyError as failure:
         found = [f"not found ({failure.message})"] * 2
     told = "The smooth slice loses stability (no jitter, no dissipation): growth ratio"

@@ -22,7 +22,7 @@ from gyrify.config import Config
 from gyrify.paper.contender import Contender, Origin
 from gyrify.paper.neighbour import neighbour
 from gyrify.paper.reading import Mechanics
-from gyrify.paper.simulations import Bench
+from gyrify.paper.simulations import Simulations
 from gyrify.paper.space import edges, mechanics_of, parameters_of
 from gyrify.study import Point
 
@@ -173,7 +173,7 @@ class Search:
 
 
 def search(
-    bench: Bench,
+    simulations: Simulations,
     base: Config,
     *,
     rounds: int = ROUNDS,
@@ -184,7 +184,7 @@ def search(
 
     Parameters
     ----------
-    bench : Bench
+    simulations : Simulations
         Who computes.
     base : Config
         Everything that no reading changes.
@@ -208,17 +208,17 @@ def search(
     for number in range(rounds + 1):
         news = (fitted.propose(number), free.propose(number)) if number else (fitted.begin(), free.begin())
         group = [contender for new in news for contender, _ in new]
-        say = partial(_say, tell, bench, (number, rounds), fitted, free, group)
-        if not _race(bench, group, until, say):
-            return Search(fitted, free, max(number - 1, 0), False, bench.core_minutes)
+        say = partial(_say, tell, simulations, (number, rounds), fitted, free, group)
+        if not _race(simulations, group, until, say):
+            return Search(fitted, free, max(number - 1, 0), False, simulations.core_minutes)
         for league, new in zip((fitted, free), news, strict=True):
             league.learn(new)
-    return Search(fitted, free, rounds, True, bench.core_minutes)
+    return Search(fitted, free, rounds, True, simulations.core_minutes)
 
 
 def _say(
     tell: Callable[[SearchProgress], None],
-    bench: Bench,
+    simulations: Simulations,
     at: tuple[int, int],
     fitted: League,
     free: League,
@@ -226,10 +226,10 @@ def _say(
 ) -> None:
     best = (fitted.ranked or group)[0]
     readings = len(fitted.contenders) + len(free.contenders) + len(group)
-    tell(SearchProgress(*at, len(bench.records), readings, best.passed, str(best.reading)))
+    tell(SearchProgress(*at, len(simulations.records), readings, best.passed, str(best.reading)))
 
 
-def _race(bench: Bench, group: list[Contender], until: float, say: Callable[[], None]) -> bool:
+def _race(simulations: Simulations, group: list[Contender], until: float, say: Callable[[], None]) -> bool:
     """Run a round's contenders to their ends, or until they have fallen behind; false where time is over."""
     while True:
         points: dict[str, Point] = {}
@@ -242,7 +242,7 @@ def _race(bench: Bench, group: list[Contender], until: float, say: Callable[[], 
             return True
         if time.perf_counter() >= until:
             return False
-        bench.run(list(points.values()))
+        simulations.run(list(points.values()))
         for contender in asking:
-            contender.learn(bench)
+            contender.learn(simulations)
         say()

@@ -2,28 +2,19 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import os
-import signal
-import threading
 from collections.abc import Callable, Sequence
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
-from multiprocessing.connection import wait
 from pathlib import Path
-from typing import Any, Final, Self
+from typing import Any, Self
 
-from gyrify.base.pool import deaf_children
-from gyrify.base.signals import ending_signals
+from gyrify.base.pool import Crew
 from gyrify.errors import GyrifyError
 from gyrify.paper.index import Index, index_metrics
 from gyrify.paper.row import Row, row_of
 from gyrify.study import Point, Record, StoredPoint, StudyProgress, final_state, run_points
 from gyrify.study.results import write_results
 
-_ONE_THREAD: Final = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
 
-
-class Bench:
+class Simulations:
     """Runs points and remembers what they came to; use it in a ``with`` block.
 
     Parameters
@@ -44,19 +35,16 @@ class Bench:
         self.records: dict[str, Record] = {}
         self.computed = 0
         self._rows: dict[tuple[str, Index], Row] = {}
-        self._executor: Executor | None = None
+        self._crew: Crew | None = None
 
     def __enter__(self) -> Self:
         if self.workers > 1:
-            os.environ.update(dict.fromkeys(_ONE_THREAD, "1"))
-            context = multiprocessing.get_context("spawn")
-            with deaf_children():  # Python begins a process that looks after the queues
-                self._executor = ProcessPoolExecutor(self.workers, context, _begin_worker)
+            self._crew = Crew(self.workers)
         return self
 
-    def __exit__(self, *_: object) -> None:
-        if self._executor is not None:
-            self._executor.shutdown(wait=True, cancel_futures=True)
+    def __exit__(self, *raised: Any) -> None:
+        if self._crew is not None:
+            self._crew.__exit__(*raised)
 
     def run(self, points: Sequence[Point]) -> None:
         """Bring points to their end, unless they are known.
@@ -71,7 +59,7 @@ class Bench:
         todo = list({point.key: point for point in points if point.key not in self.records}.values())
         if not todo:
             return
-        result = run_points(todo, self.folder, executor=self._executor, observer=self._tell)
+        result = run_points(todo, self.folder, executor=self._crew, observer=self._tell)
         self.computed += result.computed
         self.points |= {point.key: point for point in todo}
         self.records |= result.records
@@ -83,10 +71,9 @@ class Bench:
 
     def call(self, work: Callable[..., Any], *arguments: object) -> Callable[[], Any]:
         """Begin other work in one of the processes; the answer is had by calling what is returned."""
-        if self._executor is None:
+        if self._crew is None:
             return lambda: work(*arguments)
-        future: Future[Any] = self._executor.submit(work, *arguments)
-        return future.result
+        return self._crew.submit(work, *arguments).result
 
     def row(self, point: Point, index: Index) -> Row | None:
         """What a point came to by one gyrification index, if it is known."""
@@ -111,13 +98,3 @@ class Bench:
         if not self.records:
             raise GyrifyError("Nothing has been run.", "Run something first.")
         write_results(self.folder, list(self.points.values()), self.records)
-
-
-def _begin_worker() -> None:
-    """Leave Ctrl-C and a queue's warnings to the parent, and end with it whatever becomes of it."""
-    for number in ending_signals("SIGTERM"):
-        signal.signal(number, signal.SIG_IGN)
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        sentinel = parent.sentinel
-        threading.Thread(target=lambda: (wait([sentinel]), os._exit(1)), daemon=True).start()

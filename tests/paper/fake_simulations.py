@@ -1,4 +1,4 @@
-"""A bench that makes results up, from a model with a few numbers that depend on the mechanics."""
+"""A simulations that makes results up, from a model with a few numbers that depend on the mechanics."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ _ENDS = ((1.3, 2.2), (0.5, 1.5), (0.0, 0.5), (0.5, 1.0), (1.1, 1.3))
 
 
 class FakeBench:
-    """Has what the paper's code uses of a bench.
+    """Has what the paper's code uses of a simulations.
 
     Some mechanics fail at a certain case, as real ones do.
     """

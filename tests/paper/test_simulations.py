@@ -1,4 +1,4 @@
-"""The bench runs each point once, in processes or here, and the loss of stability is looked for once."""
+"""Each point is run once, in processes or here, and the loss of stability is looked for once."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from gyrify.paper.index import Index
 from gyrify.paper.loss_of_stability import FILE, stability_thresholds
 from gyrify.paper.reading import Mechanics, Reading, point_of
 from gyrify.paper.reproduce import known_rows
-from gyrify.paper.simulations import Bench
+from gyrify.paper.simulations import Simulations
 from gyrify.study import StudyProgress, read_results
 
 BASE = Config().with_overrides(
@@ -34,14 +34,14 @@ POINTS = [point_of(BASE, Mechanics(), case, 0) for case in (Case(EQUAL), Case(SO
 
 def test_points_are_run_once_and_remembered(tmp_path: Path) -> None:
     seen: list[StudyProgress] = []
-    with Bench(tmp_path, 2, seen.append) as bench:
-        bench.run(POINTS[:2])
-        bench.run([*POINTS, POINTS[0]])
-        assert bench.computed == len(bench.records) == 3
-        bench.write()
+    with Simulations(tmp_path, 2, seen.append) as simulations:
+        simulations.run(POINTS[:2])
+        simulations.run([*POINTS, POINTS[0]])
+        assert simulations.computed == len(simulations.records) == 3
+        simulations.write()
     assert read_results(tmp_path)["growth.ratio"].to_pylist() == [3.6, 3.6, 1.0]
     assert seen[-1].done == 1
-    with Bench(tmp_path) as again:
+    with Simulations(tmp_path) as again:
         assert again.row(POINTS[0], Index()) is None
         again.run(POINTS)
         assert again.computed == 0
@@ -54,9 +54,9 @@ def test_points_are_run_once_and_remembered(tmp_path: Path) -> None:
 
 def test_a_run_that_fails_is_a_row(tmp_path: Path) -> None:
     stalls = BASE.with_overrides({"solver.max_newton": 1, "growth.rate": 0.01, "solver.min_increment": 0.4})
-    with Bench(tmp_path) as bench:
-        bench.run([point_of(stalls, Mechanics(), Case(), 0)])
-        (row,) = known_rows(bench, stalls, Reading(), (Case(),), 0).values()
+    with Simulations(tmp_path) as simulations:
+        simulations.run([point_of(stalls, Mechanics(), Case(), 0)])
+        (row,) = known_rows(simulations, stalls, Reading(), (Case(),), 0).values()
     assert row.status == "failed"
     assert row.reason
 
@@ -83,8 +83,8 @@ def test_loss_of_stability_is_told_and_kept(
         return answer
 
     monkeypatch.setattr("gyrify.paper.loss_of_stability.critical_growth", critical)
-    with Bench(tmp_path) as bench:
+    with Simulations(tmp_path) as simulations:
         for _ in range(2):
-            assert stability_thresholds(bench, [POINTS[0].config], [2.5]) == [words]
+            assert stability_thresholds(simulations, [POINTS[0].config], [2.5]) == [words]
     assert calls == [(1.0, 2.5)]
     assert (tmp_path / FILE).is_file()
