@@ -12,8 +12,8 @@ from gyrify.base.pool import Watcher, each, go_on
 from gyrify.config import Config
 from gyrify.convergence.levels import Level
 from gyrify.convergence.measured import measured
-from gyrify.errors import GyrifyError, HistoryError, SolveError
-from gyrify.run.simulation import new_run, stored_run
+from gyrify.errors import GyrifyError, HistoryError
+from gyrify.run.simulation import kept_run
 from gyrify.run.summary import summarise, write_summary
 from gyrify.store.folder import JOURNAL
 from gyrify.store.history import History
@@ -122,15 +122,8 @@ def _is_complete(config: Config, target: Path) -> bool:
 
 def _grow(config: Config, target: Path, watch: Watcher) -> None:
     """Begin a run, or take it up where it ended; its summary is written whatever comes of it."""
-    if (target / JOURNAL).is_file():
-        limits = {f"limits.{key}": value for key, value in config.limits.model_dump().items()}
-        begin = stored_run(target, limits)
-    else:
-        begin = new_run(config, target)
-    with begin as run:
+    with kept_run(config, target) as run:
         try:
-            run.grow((), watch)
-        except SolveError:
-            pass  # it is on record
+            run.grow_to_some_end(watch)
         finally:
             write_summary(summarise(run.history), target / "summary.json")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
 
 from gyrify.base.arguments import Pathlike, as_path
 from gyrify.base.versions import versions
@@ -19,7 +20,7 @@ from gyrify.store.folder import JOURNAL, new_folder, stored_folder, write_config
 from gyrify.store.history import History
 from gyrify.store.journal import Journal
 
-__all__ = ["Observer", "Progress", "new_run", "resume", "simulate", "stored_run"]
+__all__ = ["Observer", "Progress", "kept_run", "new_run", "resume", "simulate", "stored_run"]
 
 
 @contextmanager
@@ -96,6 +97,24 @@ def stored_run(run: Pathlike, overrides: Mapping[str, object] | None = None) -> 
             yield Run(Slice(config), journal, f"{note} {_changed_versions(journal)}".strip())
         finally:
             journal.settle()
+
+
+def kept_run(config: Config, folder: Path, *, goes_on: bool = True) -> AbstractContextManager[Run]:
+    """Take up the run that a folder holds, with the limits of its configuration, or begin it there.
+
+    Parameters
+    ----------
+    config : Config
+        The run.
+    folder : Path
+        Its folder.
+    goes_on : bool
+        Whether what the folder holds is to be continued; if not, it is replaced.
+    """
+    if goes_on and (folder / JOURNAL).is_file():
+        limits = {f"limits.{key}": value for key, value in config.limits.model_dump().items()}
+        return stored_run(folder, limits)
+    return new_run(config, folder, overwrite=not goes_on)
 
 
 def simulate(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from contextlib import suppress
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -13,8 +12,7 @@ from gyrify.base.pool import Watcher, go_on
 from gyrify.base.versions import solver_version
 from gyrify.config import Config
 from gyrify.errors import GyrifyError
-from gyrify.run.running import Run
-from gyrify.run.simulation import new_run, stored_run
+from gyrify.run.simulation import kept_run, new_run
 from gyrify.run.summary import summarise
 from gyrify.store.folder import JOURNAL
 from gyrify.store.history import History
@@ -94,7 +92,7 @@ def lost_point(config: Config, reason: str = "Its process ended unexpectedly.") 
 
 def _in_memory(config: Config, watch: Watcher) -> History:
     with new_run(config) as run:
-        _grow(run, watch)
+        run.grow_to_some_end(watch)
     return run.history
 
 
@@ -104,29 +102,15 @@ def _in_folder(config: Config, folder: Path, watch: Watcher) -> History:
     outputs = import_module("gyrify.report.outputs")
 
     target = folder / config.config_hash[:KEY_DIGITS]
-    if was_begun(target, config.config_hash, solver_version()) and (target / JOURNAL).is_file():
-        limits = {f"limits.{key}": value for key, value in config.limits.model_dump().items()}
-        begin = stored_run(target, limits)
-    else:
+    goes_on = was_begun(target, config.config_hash, solver_version()) and (target / JOURNAL).is_file()
+    if not goes_on:
         begin_folder(target, config.config_hash, solver_version())
-        begin = new_run(config, target, overwrite=True)
-    with begin as run:
+    with kept_run(config, target, goes_on=goes_on) as run:
         try:
             if run.history.status != "completed":
-                _grow(run, watch)
+                run.grow_to_some_end(watch)
         except KeyboardInterrupt:
             outputs.write_state(run.history, target)
             raise
         outputs.write_outputs(run.history, target)
     return run.history
-
-
-def _grow(run: Run, watch: Watcher) -> None:
-    """Grow to whatever end is on record; raise what is not."""
-    try:
-        run.grow((), watch)
-    except Exception:
-        with suppress(GyrifyError):
-            if run.history.status == "failed":
-                return
-        raise
