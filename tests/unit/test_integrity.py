@@ -11,7 +11,7 @@ import pytest
 from gyrify.errors import HistoryError
 from gyrify.solve.problem import State
 from gyrify.store import Journal
-from gyrify.store.integrity import is_sound
+from gyrify.store.increment_rows import IncrementRow
 
 # number, position, span, next_span, residual, four counts, wall_s, displacement, couplings, digest
 ROW = (1, 8, 4, 4, 0.1, 3, 2, 1, 0, 0.5, bytes(64), np.array([0, 3], dtype="<i4").tobytes(), b"")
@@ -19,7 +19,8 @@ ROW = (1, 8, 4, 4, 0.1, 3, 2, 1, 0, 0.5, bytes(64), np.array([0, 3], dtype="<i4"
 
 def sound(number: int, value: object, before: int = 7) -> bool:
     """Whether the row is sound with one entry changed, after an increment at a position."""
-    return is_sound((*ROW[:number], value, *ROW[number + 1 :]), before)
+    row = IncrementRow(*ROW[:number], value, *ROW[number + 1 :])  # type: ignore[arg-type]
+    return row.is_possible(before, n_dim=2)
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -13,6 +15,7 @@ from gyrify.energy.term import FloatArray, IntArray
 from gyrify.energy.total import TotalEnergy
 from gyrify.energy.unknowns import Unknowns
 from gyrify.mesh.symmetry import representatives
+from gyrify.model.internal import INTERNAL
 from gyrify.model.meshing import build_mesh
 from gyrify.model.terms import CONSERVATIVE, GrowthStep, terms_of
 from gyrify.model.tissue import Tissue
@@ -152,17 +155,37 @@ class Slice(Tissue):
         chosen = self.config.contact.barrier_stiffness
         return AUTO_BARRIER * self.config.material.young_modulus if chosen == "auto" else float(chosen)
 
+    def reference_state(self) -> State:
+        """The undeformed state, with its internal variables."""
+        return State.reference(*self.state_shape, self.internal_at_start())
+
+    def internal_at_start(self) -> dict[str, FloatArray]:
+        """Internal variables of the reference state, by name."""
+        return {variable.name: variable.at_start(self) for variable in INTERNAL}
+
+    def evolved(self, before: State, after: State) -> State:
+        """See `gyrify.solve.problem.Problem`."""
+        if not INTERNAL:
+            return after
+        return replace(after, internal={v.name: v.after(self, before, after) for v in INTERNAL})
+
     def compile(self) -> None:
         """Compile the kernels, or load them from their cache, so that no increment has to wait for it."""
-        start = State.reference(*self.state_shape)
+        start = self.reference_state()
         total = self.energy(1.0, start, 0.0)
         total.evaluate(start.u, project_psd=True)
         total.max_step(start.u, start.u)
         self.simplices.volume_ratio(start.u)
 
-    def tissue_energy(self, fraction: float, start_u: FloatArray) -> TotalEnergy:
-        """Energy of the body without dissipation, for an increment that starts at a displacement."""
-        step = GrowthStep(self, start_u, fraction, fraction)
+    def tissue_energy(
+        self, fraction: float, start_u: FloatArray, internal: Mapping[str, FloatArray] | None = None
+    ) -> TotalEnergy:
+        """Energy of the body without dissipation, for an increment that starts at a displacement.
+
+        Internal variables are those of the reference state unless they are given.
+        """
+        own = self.internal_at_start() if internal is None else internal
+        step = GrowthStep(self, start_u, fraction, fraction, own)
         return TotalEnergy([term for _, term in terms_of(step, CONSERVATIVE)])
 
     def tangent(self, fraction: float, u: FloatArray, start_u: FloatArray, system: System) -> Tangent:
@@ -183,7 +206,7 @@ class Slice(Tissue):
 
     def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:
         """See `gyrify.solve.problem.Problem`."""
-        step = GrowthStep(self, start.u, start_fraction, fraction)
+        step = GrowthStep(self, start.u, start_fraction, fraction, start.internal)
         return TotalEnergy([term for _, term in terms_of(step)])
 
     def system(self, couplings: IntArray, unknowns: Unknowns | None = None) -> System:

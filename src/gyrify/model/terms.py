@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Final, Literal, get_args
 
@@ -35,12 +35,15 @@ class GrowthStep:
         Displacement at the start of the increment [mm].
     start, end : float
         Fractions of growth at its start and its end.
+    internal : mapping of str to float array
+        Internal variables at the start, by name.
     """
 
     problem: Slice
     start_u: FloatArray
     start: float
     end: float
+    internal: Mapping[str, FloatArray] = field(default_factory=dict)
 
     @cached_property
     def kinematics(self) -> ElasticKinematics:

@@ -20,7 +20,7 @@ with growth at fixed displacement is on neither side.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -85,7 +85,7 @@ def reevaluated(history: History) -> Iterator[Increment]:
     """Evaluate every increment of a run again, from the stored states."""
     problem, fractions = history.slice, history.fractions
     before = history.journal.state(0)
-    power, force = _growth_power(problem, 0.0, before.u), np.zeros_like(before.u)
+    power, force = _growth_power(problem, 0.0, before.u, before.internal), np.zeros_like(before.u)
     for number in range(1, len(history)):
         after, span = history.journal.state(number), (float(fractions[number - 1]), float(fractions[number]))
         increment, power, force = _evaluate(problem, before, after, span, power, force)
@@ -97,8 +97,9 @@ def _evaluate(
     problem: Slice, before: State, after: State, span: tuple[float, float], power: float, force: FloatArray
 ) -> tuple[Increment, float, FloatArray]:
     """One increment; ``power`` of growth and ``force`` of dissipation are those at its start, then end."""
-    step, duration = GrowthStep(problem, before.u, *span), problem.config.growth.duration
-    at_start = _growing(problem, span[0], before.u)
+    step = GrowthStep(problem, before.u, *span, before.internal)
+    duration = problem.config.growth.duration
+    at_start = _growing(problem, span[0], before.u, before.internal)
     gradient, force_after = np.zeros_like(after.u), np.zeros_like(after.u)
     change: dict[Role, float] = dict.fromkeys(ROLES, 0.0)
     rise = scale = 0.0
@@ -110,9 +111,10 @@ def _evaluate(
         rise += end.value - start
         scale += abs(start)
         change[kind.role] += end.value - at_start.get(kind.name, start)
+    relaxed = _relaxed(problem, span[1], before, after)
     gradient[problem.mesh.clamped] = 0.0
     J, J_e = problem.least_volume_ratios(after.u, span[1] * duration)
-    power_after = _growth_power(problem, span[1], after.u)
+    power_after = _growth_power(problem, span[1], after.u, after.internal)
     work, work_error = _growth_work(problem, before, after, span, (power, power_after))
     return (
         Increment(
@@ -124,10 +126,10 @@ def _evaluate(
             smallest_cell=int(J.argmin()),
             smallest_elastic_cell=int(J_e.argmin()),
             is_path_free=problem.is_path_admissible(before.u, after.u),
-            stored=change["stored"],
+            stored=change["stored"] - relaxed,
             contact=change["contact"],
             external=change["external"],
-            dissipated=float(0.5 * np.sum((force + force_after) * (after.u - before.u))),
+            dissipated=relaxed + float(0.5 * np.sum((force + force_after) * (after.u - before.u))),
             work=work,
             work_error=work_error,
         ),
@@ -136,16 +138,28 @@ def _evaluate(
     )
 
 
-def _growing(problem: Slice, fraction: float, u: FloatArray) -> dict[str, float]:
+def _growing(
+    problem: Slice, fraction: float, u: FloatArray, internal: Mapping[str, FloatArray]
+) -> dict[str, float]:
     """Energy of each term that growth changes at fixed displacement, by name [Pa mm^2]."""
-    terms = terms_of(GrowthStep(problem, u, fraction, fraction), ("stored", "external"))
+    terms = terms_of(GrowthStep(problem, u, fraction, fraction, internal), ("stored", "external"))
     return {kind.name: term.evaluate(u, 0).value for kind, term in terms}
 
 
-def _growth_power(problem: Slice, fraction: float, u: FloatArray) -> float:
+def _relaxed(problem: Slice, fraction: float, before: State, after: State) -> float:
+    """Energy that a change of the internal variables lets go at fixed displacement [Pa mm^2]."""
+    if not after.internal:
+        return 0.0
+    held, free = (_growing(problem, fraction, after.u, state.internal) for state in (before, after))
+    return sum(held.values()) - sum(free.values())
+
+
+def _growth_power(
+    problem: Slice, fraction: float, u: FloatArray, internal: Mapping[str, FloatArray]
+) -> float:
     """Change of energy with growth at fixed displacement, per fraction of growth [Pa mm^2]."""
     early, late = (
-        sum(_growing(problem, fraction + step, u).values()) for step in (-_DIFFERENCE, _DIFFERENCE)
+        sum(_growing(problem, fraction + step, u, internal).values()) for step in (-_DIFFERENCE, _DIFFERENCE)
     )
     return (late - early) / (2.0 * _DIFFERENCE)
 
@@ -155,7 +169,8 @@ def _growth_work(
 ) -> tuple[float, float]:
     """Work of growth by Simpson's rule, and how far it is from that of the trapezoidal rule."""
     length, trapezoid = span[1] - span[0], 0.5 * (powers[0] + powers[1])
-    middle = _growth_power(problem, 0.5 * (span[0] + span[1]), 0.5 * (before.u + after.u))
+    halfway = 0.5 * (before.u + after.u)
+    middle = _growth_power(problem, 0.5 * (span[0] + span[1]), halfway, before.internal)
     if not math.isfinite(middle):
         return length * trapezoid, math.inf
     simpson = (2.0 * trapezoid + 4.0 * middle) / 6.0

@@ -73,7 +73,7 @@ class Run:
         limits = problem.config.limits
         self._limits = Watch(limits.wall_time, limits.memory)
         if len(journal) == 0:
-            journal.append(State.reference(*problem.state_shape), 0.0)
+            journal.append(problem.reference_state(), 0.0)
 
     @property
     def history(self) -> History:

@@ -47,7 +47,7 @@ def new_run(config: ConfigLike, out: Pathlike | None = None, *, overwrite: bool 
     """
     config = as_config(config)
     problem = Slice(config)
-    meta = {"config": config.to_toml(), "versions": json.dumps(versions())}
+    meta = {"config": config.to_toml(), "versions": json.dumps(versions()), "n_dim": str(problem.mesh.n_dim)}
     if out is None:
         yield Run(problem, Journal.create(None, meta))
         return

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Final, Protocol
 
 import numpy as np
@@ -41,6 +42,8 @@ class State:
         Largest nodal force [Pa mm].
     stats : Stats
         Work since the start of the run.
+    internal : mapping of str to float array
+        Internal variables by name: what the state has besides the displacement; see `gyrify.model.internal`.
     """
 
     index: int
@@ -52,12 +55,13 @@ class State:
     couplings: IntArray
     residual: float
     stats: Stats
+    internal: Mapping[str, FloatArray] = field(default_factory=dict)
 
     @staticmethod
-    def reference(n_points: int, n_dim: int) -> State:
+    def reference(n_points: int, n_dim: int, internal: Mapping[str, FloatArray] | None = None) -> State:
         """Undeformed state at growth time zero."""
-        zero = np.zeros((n_points, n_dim))
-        return State(0, 0, zero, TICKS, zero, TICKS, np.empty((0, 2), dtype=np.int64), 0.0, Stats())
+        zero, none = np.zeros((n_points, n_dim)), np.empty((0, 2), dtype=np.int64)
+        return State(0, 0, zero, TICKS, zero, TICKS, none, 0.0, Stats(), internal or {})
 
 
 class Problem(Protocol):
@@ -81,6 +85,10 @@ class Problem(Protocol):
     @property
     def may_jump(self) -> bool:
         """Whether the path of states may have jumps, which no increment is small enough to resolve."""
+        ...
+
+    def evolved(self, before: State, after: State) -> State:
+        """The accepted state with its internal variables, which an increment from ``before`` has led to."""
         ...
 
     def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:

@@ -55,7 +55,7 @@ def grow(
     while state.position < stepping.end:
         accepted = _advance(increments, state)
         work = accepted.stats - state.stats
-        state = inspect(state, accepted)
+        state = problem.evolved(state, inspect(state, accepted))
         increments.accept(state, work)
         yield state
 

@@ -32,6 +32,7 @@ _WORDS: Final = (
     "contact_library",
     "config",
     "versions",
+    "n_dim",
 )
 _LONGEST_TEXT: Final = 1_000_000
 _ADVICE: Final = "Restore the journal from a copy, or run again with --overwrite."
@@ -80,6 +81,8 @@ def require_facts(meta: dict[Any, Any], name: str) -> None:
             raise HistoryError(f"The journal {name} is damaged: its {key} is not text.", _ADVICE)
     if "config" not in meta:
         raise HistoryError(f"The journal {name} is damaged: it has no configuration.", _ADVICE)
+    if meta.get("n_dim", "2") not in ("2", "3"):
+        raise HistoryError(f"The journal {name} is damaged: it has no dimension.", _ADVICE)
     if meta.get("status", "running") not in STATUSES:
         raise HistoryError(f"The journal {name} is damaged: its status is not known.", _ADVICE)
     try:
@@ -90,25 +93,39 @@ def require_facts(meta: dict[Any, Any], name: str) -> None:
         raise HistoryError(f"The journal {name} is damaged: its versions cannot be read.", _ADVICE)
 
 
-def is_sound(row: tuple[Any, ...], position_before: int) -> bool:
+def is_sound(
+    whole: tuple[Any, ...],
+    numbers: tuple[Any, ...],
+    blobs: tuple[bytes, bytes],
+    position_before: int,
+    n_dim: int,
+) -> bool:
     """Whether a row of increments holds what a run could have written after another position.
 
     Parameters
     ----------
-    row : tuple
-        As `gyrify.store.journal` has it, its blobs being bytes.
+    whole : tuple
+        Number, position, span, next span, and what was counted.
+    numbers : tuple
+        Residual and time.
+    blobs : (bytes, bytes)
+        Displacement and couplings.
     position_before : int
         Position of the increment before it; -1 for the first.
+    n_dim : int
+        Dimension of the mesh.
     """
-    whole, (residual, wall_s), (u, couplings) = (*row[:4], *row[5:9]), (row[4], row[9]), row[10:12]
+    (_, position, span, next_span, *_), (u, couplings), per_row = whole, blobs, 8 * n_dim
     if not all(type(value) is int and 0 <= value < 2**63 for value in whole):
         return False
-    if not all(isinstance(value, float | int) and math.isfinite(value) for value in (residual, wall_s)):
+    if not all(isinstance(value, float | int) and math.isfinite(value) for value in numbers):
         return False
-    if row[1] <= position_before or row[2] < 1 or row[3] < 1 or len(u) % 16 or not u or len(couplings) % 8:
+    if position <= position_before or min(span, next_span) < 1:
+        return False
+    if len(u) % per_row or not u or len(couplings) % 8:
         return False
     pairs = np.frombuffer(couplings, dtype="<i4")
-    return pairs.size == 0 or bool(pairs.min() >= 0 and pairs.max() < len(u) // 16)
+    return pairs.size == 0 or bool(pairs.min() >= 0 and pairs.max() < len(u) // per_row)
 
 
 def is_sound_change(change: StabilityChange) -> bool:
@@ -125,15 +142,16 @@ def is_sound_change(change: StabilityChange) -> bool:
     )
 
 
-def is_sound_onset(row: tuple[Any, ...], n_bytes: int) -> bool:
+def is_sound_onset(row: tuple[Any, ...], n_bytes: int, n_dim: int) -> bool:
     """Whether the onset holds numbers, and arrays of a state of ``n_bytes``."""
+    per_row = 8 * n_dim
     numbers, whole, (displacement, vector) = (*row[1:5], row[6]), row[5], row[7:9]
     return (
         all(isinstance(value, float | int) for value in numbers)
         and type(whole) is int
-        and all(isinstance(blob, bytes) and len(blob) % 16 == 0 for blob in (displacement, vector))
+        and all(isinstance(blob, bytes) and len(blob) % per_row == 0 for blob in (displacement, vector))
         and len(displacement) == len(vector)
-        and n_bytes - 16 <= len(displacement) <= n_bytes
+        and n_bytes - per_row <= len(displacement) <= n_bytes
     )
 
 

@@ -12,15 +12,11 @@ import hashlib
 import sqlite3
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import astuple
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
-
 from gyrify.errors import HistoryError
 from gyrify.solve.problem import State
-from gyrify.solve.result import Stats
 from gyrify.solve.stability import Onset, StabilityChange
 from gyrify.solve.types import FloatArray
 from gyrify.store import onset_rows
@@ -33,10 +29,9 @@ from gyrify.store.database import (
     transaction,
     translated,
 )
+from gyrify.store.increment_rows import QUERY, IncrementRow, add_internal, internal_bytes, read_internal
 from gyrify.store.integrity import (
     confine,
-    digest,
-    is_sound,
     is_sound_change,
     is_sound_onset,
     require_facts,
@@ -154,18 +149,21 @@ class Journal:
         require_facts(meta, self.name)
         if "seal" in meta and sealed({"config": str(meta.get("config"))})["seal"] != meta["seal"]:
             raise HistoryError(f"The configuration in {self.name} is damaged: its checksum differs.", RERUN)
-        position, n_bytes = -1, 0
+        position, n_bytes, n_dim = -1, 0, self.n_dim
+        variables = self._internal(0).keys()
         for number in range(len(self)):
             row = self._row(number)
-            if not is_sound(row, position) or (number > 0 and len(row[10]) != n_bytes):
+            is_complete = self._internal(number).keys() == variables
+            is_as_long = number == 0 or len(row.displacement) == n_bytes
+            if not (row.is_possible(position, n_dim) and is_complete and is_as_long):
                 raise HistoryError(
                     f"Increment {number} in {self.name} is damaged: {_IMPOSSIBLE}.",
                     RERUN,
                 )
-            position, n_bytes = row[1], len(row[10])
+            position, n_bytes = row.position, len(row.displacement)
         if not (
             all(type(value) is int for pair in pivots for value in pair)
-            and (onset is None or is_sound_onset(onset, n_bytes))
+            and (onset is None or is_sound_onset(onset, n_bytes, n_dim))
             and all(map(is_sound_change, changes))
         ):
             raise HistoryError(f"The record of stability in {self.name} is damaged: {_IMPOSSIBLE}.", RERUN)
@@ -190,19 +188,10 @@ class Journal:
         changes: Sequence[StabilityChange] = (),
     ) -> None:
         """Record an accepted increment, and what was found of its stability, in one transaction."""
-        u = np.ascontiguousarray(state.u, dtype="<f8").tobytes()
-        couplings = np.ascontiguousarray(state.couplings, dtype="<i4").tobytes()
-        numbers = (
-            state.index,
-            state.position,
-            state.span,
-            state.next_span,
-            state.residual,
-            *astuple(state.stats),
-        )
-        row = (*numbers, wall_s, u, couplings, digest(numbers, u, couplings))
+        row = IncrementRow.of(state, wall_s)
         with translated(self.name), transaction(self._connection):
             self._connection.execute(f"INSERT INTO increments VALUES ({','.join('?' * len(row))})", row)
+            add_internal(self._connection, state.index, state.internal)
             if n_negative is not None:
                 self._connection.execute("INSERT INTO stability VALUES (?, ?)", (state.index, n_negative))
             if onset is not None:
@@ -244,56 +233,56 @@ class Journal:
                 row[0] for row in self._connection.execute(f"SELECT {name} FROM increments ORDER BY number")
             ]
 
+    @property
+    def n_dim(self) -> int:
+        """Dimension of the mesh; 2 where it is not on record."""
+        return int(self.meta("n_dim", "2"))
+
     def displacement(self, number: int) -> FloatArray:
-        """(n_points, 2) displacement of an increment [mm]."""
-        return _displacement(self._row(number)[10])
+        """(n_rows, n_dim) displacement of an increment [mm]."""
+        return self._row(number).u(self.n_dim)
 
     def state(self, number: int) -> State:
         """Everything that the increment after ``number`` depends on."""
-        row = self._row(number)
-        u = _displacement(row[10])
-        return State(
-            index=number,
-            position=row[1],
-            u=u,
-            span=row[2],
-            u_before=self.displacement(number - 1) if number > 0 else np.zeros_like(u),
-            next_span=row[3],
-            couplings=np.frombuffer(row[11], dtype="<i4").astype(np.int64).reshape(-1, 2),
-            residual=row[4],
-            stats=Stats(*row[5:9]),
-        )
+        before = self.displacement(number - 1) if number > 0 else None
+        return self._row(number).state(self.n_dim, before, self._internal(number))
 
     @property
     def result_hash(self) -> str:
-        """SHA-256 (hexadecimal) of growth times and displacements of all increments, in order."""
+        """SHA-256 (hexadecimal) of growth times and states of all increments, in order."""
         digest = hashlib.sha256()
         query = "SELECT position, displacement FROM increments ORDER BY number"
         with translated(self.name):
             for position, displacement in self._connection.execute(query):
                 digest.update(int(position).to_bytes(8, "little"))
                 digest.update(displacement)
+            for part in internal_bytes(self._connection):
+                digest.update(part)
         return digest.hexdigest()
 
-    def _row(self, number: int) -> tuple[Any, ...]:
+    def _row(self, number: int) -> IncrementRow:
         with translated(self.name):
-            query = "SELECT * FROM increments WHERE number = ?"
-            row: tuple[Any, ...] | None = self._connection.execute(query, (int(number),)).fetchone()
-        if row is None:
+            found = self._connection.execute(QUERY, (int(number),)).fetchone()
+        if found is None:
             raise HistoryError(
                 f"The journal {self.name} has no increment {number}.", f"It holds {len(self)}."
             )
-        is_bytes = isinstance(row[10], bytes) and isinstance(row[11], bytes)
-        if not is_bytes or digest(row[:9], row[10], row[11]) != row[12]:
+        row = IncrementRow(*found)
+        if not row.is_undamaged:
             raise HistoryError(f"Increment {number} in {self.name} is damaged: its checksum differs.", RERUN)
         return row
+
+    def _internal(self, number: int) -> dict[str, FloatArray]:
+        with translated(self.name):
+            try:
+                return read_internal(self._connection, number)
+            except ValueError as fault:
+                raise HistoryError(
+                    f"Increment {number} in {self.name} is damaged: {fault}.", RERUN
+                ) from fault
 
 
 def _nothing_stored(path: Path) -> HistoryError:
     return HistoryError(
         f"The journal {path} is empty: the run ended before its first state was stored.", RERUN
     )
-
-
-def _displacement(blob: bytes) -> FloatArray:
-    return np.frombuffer(blob, dtype="<f8").astype(np.float64).reshape(-1, 2)

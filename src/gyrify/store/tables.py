@@ -51,5 +51,17 @@ CREATE TABLE stability_changes (
 );
 """
 
+# Made where a run has internal variables: values that a state has besides the displacement.
+INTERNAL: Final = """
+CREATE TABLE internal (
+    number INTEGER NOT NULL,
+    name TEXT NOT NULL,
+    shape TEXT NOT NULL,
+    data BLOB NOT NULL,
+    digest BLOB NOT NULL,
+    PRIMARY KEY (number, name)
+);
+"""
+
 TABLES: Final = INCREMENTS + STABILITY + CHANGES
-TABLES_OF_ANY_VERSION: Final = (TABLES, INCREMENTS + STABILITY)
+TABLES_OF_ANY_VERSION: Final = (TABLES, INCREMENTS + STABILITY, TABLES + INTERNAL)
