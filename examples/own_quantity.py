@@ -9,11 +9,11 @@ Run it: ``python examples/own_quantity.py``
 from __future__ import annotations
 
 import gyrify
+from gyrify.metrics.deformed import Deformed
 from gyrify.metrics.quantities import MEASURED, Quantity
-from gyrify.metrics.shape import Shape
 
 
-def buried_fraction(shape: Shape) -> float:
+def buried_fraction(shape: Deformed) -> float:
     """Part of the contour that a disc of the closing radius cannot touch [-]."""
     return max(1.0 - shape.exposed_length / shape.length, 0.0)
 

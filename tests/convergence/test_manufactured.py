@@ -13,8 +13,8 @@ import pytest
 from manufactured import Manufactured
 from panels import ELEMENTS, Panel, rates, square, straight_square
 
+from gyrify.mesh.layered import elliptic_ring
 from gyrify.mesh.layered_grid import Layers
-from gyrify.mesh.ring import elliptic_ring
 
 LEVELS = {"linear": (16, 32, 64), "mean_dilatation": (16, 32, 64), "quadratic": (8, 16, 32)}
 RING_LEVELS = (1, 2, 4)

@@ -15,8 +15,8 @@ from gyrify.energy.elastic import CellPattern, ElasticEnergy
 from gyrify.energy.kinematics import ElasticKinematics, Simplices
 from gyrify.energy.mean_dilatation import MeanDilatationEnergy, PatchPattern
 from gyrify.mesh import Mesh
+from gyrify.mesh.layered import elliptic_ring
 from gyrify.mesh.layered_grid import Layers
-from gyrify.mesh.ring import elliptic_ring
 from gyrify.physics.materials import NEO_HOOKEAN
 from gyrify.physics.stress import energy_density, first_piola
 

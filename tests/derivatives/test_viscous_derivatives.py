@@ -11,8 +11,8 @@ from oracle import area, complex_step, deformation
 from gyrify.energy.elastic import CellPattern
 from gyrify.energy.kinematics import ElasticKinematics, Simplices
 from gyrify.energy.viscous import DragEnergy, KelvinVoigtEnergy
+from gyrify.mesh.layered import elliptic_ring
 from gyrify.mesh.layered_grid import Layers
-from gyrify.mesh.ring import elliptic_ring
 
 STEPS = 10.0 ** -np.arange(1.0, 9.5, 0.5)
 

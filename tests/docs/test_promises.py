@@ -24,7 +24,7 @@ def test_a_material_is_named_in_its_own_file_in_the_list_and_as_the_default_alon
         for file in SOURCE.rglob("*.py")
         if re.search("neo_hookean|NEO_HOOKEAN", file.read_text(encoding="utf-8"))
     }
-    defaults = {"config/physics_sections.py", "config/cross_checks.py"}
+    defaults = {"config/physics_sections.py"}
     defaults |= {f"energy/{name}.py" for name in ("elastic", "axial", "mean_dilatation")}
     own = {"physics/materials/neo_hookean.py", "physics/materials/__init__.py"}
     assert naming == own | defaults | {"run/validity/expected.py"}

@@ -21,6 +21,7 @@ DEFAULTS: dict[str, Any] = {
     "mesh.n_around": 216, "mesh.n_layers": 17, "mesh.n_cortex_layers": 6, "mesh.grading": "geometric",
     "mesh.split": "alternating", "mesh.node_jitter": 1e-3, "mesh.element": "linear",
     "mesh.inversion_resistance": 0.0, "mesh.refine": 0, "mesh.refine_cortex": 0,
+    "material.law": "neo_hookean",
     "material.young_modulus": 9210.87, "material.stiffness_ratio": 1.0,
     "material.poisson_ratio": 0.458, "material.poisson_ratio_white": 0.458,
     "growth.rate": 0.002, "growth.ratio": 3.6, "growth.duration": 500.0, "growth.out_of_plane": "blocked",

@@ -7,6 +7,7 @@ import html
 import json
 import pickle
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,8 @@ from gyrify.config import Config, parse_number, preset_about, preset_names
 from gyrify.config.rows import rows
 from gyrify.config.schema import json_schema
 from gyrify.errors import ConfigError
+from gyrify.physics import materials
+from gyrify.physics.materials import NEO_HOOKEAN
 
 REFERENCE_HASH = "70e224fd81e3cc74d9599037b3e4cc1a74211c6ad31661f2af824bd0ccfb02e9"
 
@@ -173,6 +176,7 @@ def changed(value: Any, key: str) -> Any:
         "growth.stretch": "exponential",
         "growth.energy_per": "reference",
         "growth.law": "tangential",
+        "material.law": "another",
         "contact.barrier_stiffness": 5.0,
         "dissipation.kind": "none",
         "dissipation.course": "reduced",
@@ -189,7 +193,8 @@ def changed(value: Any, key: str) -> Any:
 
 
 @pytest.mark.parametrize("row", [r for r in rows(Config()) if r.key != "schema_version"], ids=lambda r: r.key)
-def test_hash_sees_what_matters(row: Any) -> None:
+def test_hash_sees_what_matters(row: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(materials, "MATERIALS", [NEO_HOOKEAN, replace(NEO_HOOKEAN, name="another")])
     # to follow a branch needs a tissue without dissipation
     free = {"dissipation.kind": "none"} if row.key == "stability.follow_branch" else {}
     config = Config().replace(**free, **{row.key: changed(row.value, row.key)})

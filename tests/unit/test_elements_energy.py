@@ -12,8 +12,8 @@ from gyrify.energy.kinematics import Simplices
 from gyrify.energy.total import TotalEnergy
 from gyrify.errors import ConfigError
 from gyrify.mesh import Mesh
+from gyrify.mesh.layered import elliptic_ring
 from gyrify.mesh.layered_grid import Layers
-from gyrify.mesh.ring import elliptic_ring
 from gyrify.model.tissue import Tissue
 
 ELEMENTS = ["linear", "quadratic", "mean_dilatation"]

@@ -10,9 +10,9 @@ import pytest
 from gyrify.errors import MeshError
 from gyrify.mesh import GREY, WHITE
 from gyrify.mesh.grading import layer_fractions
+from gyrify.mesh.layered import elliptic_ring
 from gyrify.mesh.layered_grid import Layers
 from gyrify.mesh.quality import triangle_quality
-from gyrify.mesh.ring import elliptic_ring
 
 A, B, H, T = 39.42, 32.85, 0.5, 1.5
 

@@ -8,9 +8,9 @@ import pytest
 from gyrify import Config, ConfigError, MeshError
 from gyrify.energy.total import FreePattern
 from gyrify.energy.unknowns import Unknowns
+from gyrify.mesh.layered import elliptic_ring
 from gyrify.mesh.layered_grid import Layers
 from gyrify.mesh.mesh import Mesh
-from gyrify.mesh.ring import elliptic_ring
 from gyrify.mesh.symmetry import Mirror, representatives, symmetric_field
 from gyrify.model.meshing import build_mesh
 

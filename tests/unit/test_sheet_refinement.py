@@ -9,10 +9,9 @@ import pytest
 
 from gyrify.errors import MeshError
 from gyrify.mesh import GREY, WHITE, Mesh
+from gyrify.mesh.layered import elliptic_ring, periodic_strip
 from gyrify.mesh.layered_grid import Layers
 from gyrify.mesh.quality import triangle_quality
-from gyrify.mesh.ring import elliptic_ring
-from gyrify.mesh.strip import periodic_strip
 
 A, B, H, T = 39.42, 32.85, 0.5, 1.5
 LENGTH, DEPTH = 24.0, 12.0

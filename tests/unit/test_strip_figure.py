@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from gyrify.mesh.layered import periodic_strip
 from gyrify.mesh.layered_grid import Layers
-from gyrify.mesh.strip import periodic_strip
 from gyrify.metrics.periodic import strip_closing_outline
 from gyrify.report import folded_figure
 from gyrify.report.drawn_slice import periodic_sheet

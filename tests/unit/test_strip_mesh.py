@@ -12,8 +12,8 @@ from gyrify.config import Config
 from gyrify.energy.kinematics import Simplices
 from gyrify.errors import ConfigError, MeshError
 from gyrify.mesh import GREY, Mesh
+from gyrify.mesh.layered import periodic_strip
 from gyrify.mesh.layered_grid import Layers
-from gyrify.mesh.strip import periodic_strip
 from gyrify.model.slice import Slice, build_mesh
 
 # 30 mm long, 12 mm deep, a film of 1.5 mm

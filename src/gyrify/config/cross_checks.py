@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
-from gyrify.config.words import shorten
-
 if TYPE_CHECKING:
     from gyrify.config.settings import Config
 
@@ -14,13 +12,11 @@ MAX_WALL_SHARE: Final = 0.95
 MAX_CELLS: Final = 4_000_000
 FEWEST_COLUMNS: Final = 24
 MAX_GROWTH: Final = 10.0
-STANDARD_LAW: Final = "neo_hookean"
 
 
 def faults(config: Config) -> list[str]:
     """Return every broken condition of a configuration, in words."""
     checks = (
-        _law,
         _layers,
         _white_matter,
         _cells,
@@ -32,18 +28,6 @@ def faults(config: Config) -> list[str]:
         _symmetry,
     )
     return [fault for check in checks if (fault := check(config))]
-
-
-def _law(config: Config) -> str:
-    law = config.material.law
-    if law == STANDARD_LAW:
-        return ""
-    from gyrify.physics.materials import MATERIALS  # numba takes its time, and most need none of it
-
-    known = [material.name for material in MATERIALS]
-    if law in known:
-        return ""
-    return f'material.law = "{shorten(law)}" is not known: there is {", ".join(known)}. Try {known[0]}.'
 
 
 def _layers(config: Config) -> str:
@@ -202,7 +186,6 @@ def _symmetry(config: Config) -> str:
 
 
 _CHECKS: Final = (
-    _law,
     _layers,
     _white_matter,
     _cells,

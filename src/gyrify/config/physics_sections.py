@@ -8,11 +8,25 @@ from typing import Annotated, Final, Literal
 from pydantic import Field, model_validator
 
 from gyrify.config.base import Section, setting
+from gyrify.config.registered import Registered
 
 PAPER: Final = "Wang 2019"
 # Of the standard slice: area inside its contour [mm²] and thickness of its cortex [mm].
 STANDARD_AREA: Final = 4069.0
 STANDARD_THICKNESS: Final = 1.5
+
+
+def _shapes() -> list[str]:
+    from gyrify.mesh.shapes import SHAPES
+
+    return list(SHAPES)
+
+
+def _materials() -> list[str]:
+    from gyrify.physics.materials import MATERIALS  # numba takes its time, and most need none of it
+
+    return [material.name for material in MATERIALS]
+
 
 Stiffness = Annotated[float, Field(gt=0, le=1e15)]
 
@@ -20,7 +34,7 @@ Stiffness = Annotated[float, Field(gt=0, le=1e15)]
 class Geometry(Section):
     """The slice: a hollow ellipse or circle, or a strip that is periodic in x and clamped below."""
 
-    shape: Literal["ellipse", "circle", "strip"] = setting(
+    shape: Annotated[str, Registered(("ellipse", "circle", "strip"), _shapes)] = setting(
         "ellipse", "Shape of the slice.", source=f"{PAPER}, Fig. 1"
     )
     area: float = setting(
@@ -153,10 +167,8 @@ class MeshSettings(Section):
 class Material(Section):
     """Hyperelastic cortex and white matter."""
 
-    law: str = setting(
-        "neo_hookean",
-        "Energy of the elastic deformation: a name in the list of materials.",
-        max_length=40,
+    law: Annotated[str, Registered(("neo_hookean",), _materials)] = setting(
+        "neo_hookean", "Energy of the elastic deformation: a name in the list of materials."
     )
     young_modulus: float = setting(
         9210.87,

@@ -10,6 +10,8 @@ from typing import Any, Final
 
 from pydantic.fields import FieldInfo
 
+from gyrify.config.registered import Registered
+
 MAX_SHOWN: Final = 60
 
 
@@ -81,6 +83,8 @@ def choices(field: FieldInfo) -> tuple[Any, ...]:
     for kind in alternatives(field):
         item = typing.get_args(kind)[0] if typing.get_origin(kind) is tuple else kind
         words += typing.get_args(item) if typing.get_origin(item) is typing.Literal else ()
+    for metadata in field.metadata:
+        words += metadata.words() if isinstance(metadata, Registered) else ()
     return tuple(words)
 
 

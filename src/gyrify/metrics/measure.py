@@ -107,7 +107,7 @@ def measure_valid(
 
 @dataclass(frozen=True, eq=False)
 class Ring:
-    """A closed contour; see `gyrify.metrics.shape.Shape`, and `measure_valid` for the parameters."""
+    """A closed contour; see `gyrify.metrics.deformed`, and `measure_valid` for the parameters."""
 
     contour: FloatArray
     interface: FloatArray

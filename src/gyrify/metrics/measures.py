@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from gyrify.base.markup import html_rows
+from gyrify.metrics.deformed import Deformed
 from gyrify.metrics.quantities import MEASURED, flat
-from gyrify.metrics.shape import Shape
 
 
 class Measures:
@@ -68,7 +68,7 @@ class Measures:
         self.__dict__.update({name: values[name] for name in names})
 
     @classmethod
-    def of(cls, shape: Shape) -> Measures:
+    def of(cls, shape: Deformed) -> Measures:
         """Every quantity of a state."""
         found = {}
         for quantity in MEASURED:

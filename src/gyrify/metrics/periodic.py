@@ -42,7 +42,7 @@ _WIDE = 10.0
 
 @dataclass(frozen=True, eq=False)
 class Strip:
-    """One period of a contour; see `gyrify.metrics.shape.Shape`, and `measure_valid` for the parameters.
+    """One period of a contour; see `gyrify.metrics.deformed`, and `measure_valid` for the parameters.
 
     Heights are measured from the mean level of the contour. The gap counts neighbours as in
     `gyrify.metrics.min_gap`, images included; a contour without folds has none, and it is infinite.

@@ -1,7 +1,7 @@
 """Every quantity that a run comes to, once: its key in files, type, unit, label, and where it is shown.
 
 Summary, CSV, Parquet, report, notebook, table and the documentation read this list. A quantity of a state is
-one function of a `gyrify.metrics.shape.Shape` and one entry in `MEASURED`.
+one function of a `gyrify.metrics.deformed.Deformed` and one entry in `MEASURED`.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
-from gyrify.metrics.shape import Shape
+from gyrify.metrics.deformed import Deformed
 from gyrify.metrics.sharpness import fold_sharpness
 
 # "run" and "notebook": what a run came to, in its report and in a notebook; "study": columns of a study's
@@ -59,7 +59,7 @@ class Quantity:
     decimals: int | None = None
     about: str = ""
     shown: frozenset[Place] = frozenset()
-    measure: Callable[[Shape], float | int | bool] | None = None
+    measure: Callable[[Deformed], float | int | bool] | None = None
     name: str = ""
     in_results: bool = True
     leads: bool = False
@@ -85,7 +85,7 @@ def _in(*places: Place) -> frozenset[Place]:
     return frozenset(places)
 
 
-def _exposed_index(shape: Shape) -> float:
+def _exposed_index(shape: Deformed) -> float:
     return shape.length / shape.exposed_length if shape.exposed_length > 0 else math.inf
 
 

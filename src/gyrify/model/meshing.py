@@ -8,10 +8,10 @@ from typing import Final
 from gyrify.config import Config
 from gyrify.errors import ConfigError, MeshError
 from gyrify.mesh import Mesh
+from gyrify.mesh.layered import layered_mesh
 from gyrify.mesh.layered_grid import Layers
 from gyrify.mesh.quality import SliverError
-from gyrify.mesh.ring import elliptic_ring
-from gyrify.mesh.strip import periodic_strip
+from gyrify.mesh.shapes import shape_of
 
 _FEWEST_COLUMNS, _MOST_COLUMNS = 24, 4096
 _MOST_LAYERS: Final = 64
@@ -48,9 +48,7 @@ def _built(config: Config) -> Mesh:
         refine=mesh.refine,
         refine_cortex=mesh.refine_cortex,
     )
-    if geometry.shape == "strip":
-        return periodic_strip(geometry.length, geometry.depth, geometry.cortical_thickness, layers)
-    return elliptic_ring(geometry.semi_axes, geometry.hole_fraction, geometry.cortical_thickness, layers)
+    return layered_mesh(shape_of(geometry), layers)
 
 
 def _advice(config: Config, direction: str) -> str:

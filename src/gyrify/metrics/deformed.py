@@ -9,7 +9,7 @@ from gyrify.metrics.folds import Folds
 from gyrify.metrics.gyri import GyrusShapes
 
 
-class Shape(Protocol):
+class Deformed(Protocol):
     """One deformed state, closed or one period of a strip; each part is computed when it is first read.
 
     Attributes

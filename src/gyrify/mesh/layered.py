@@ -1,0 +1,83 @@
+"""The mesh of a shape: a layered grid of triangles, bent to it."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from gyrify.mesh.layered_grid import Layers, Sheet, build_sheet
+from gyrify.mesh.mesh import FloatArray, Mesh
+from gyrify.mesh.quality import require_quality
+from gyrify.mesh.shapes import Ellipse, PeriodicStrip, Shape
+
+# The grid's layers run counter-clockwise, with the outside on the right; along a strip it is on the left.
+_MIRRORED: Final = {3: [0, 2, 1], 6: [0, 2, 1, 5, 4, 3]}
+
+
+def layered_mesh(shape: Shape, layers: Layers) -> Mesh:
+    """Mesh a shape in layers from the clamped side to the contour.
+
+    Parameters
+    ----------
+    shape : Shape
+        The body.
+    layers : Layers
+        How its wall is divided. Jitter slides points of the contour, the interface and the clamped side along
+        their line, so that these lines stay exact. An odd ``n_around`` breaks the alternating split at the
+        seam.
+
+    Returns
+    -------
+    Mesh
+
+    Raises
+    ------
+    MeshError
+        If a cell would be a sliver, or the shape has no mirrors that the split asks for.
+    """
+    white, T = shape.wall
+    sheet = build_sheet(layers, T / white, (white, T), shape.length, n_mirrors=shape.n_mirrors)
+    points = shape.points(sheet.along, sheet.depth)
+    points, mirrors = shape.mirrored(points, sheet.images) if sheet.images else (points, ())
+    order = slice(None) if shape.is_closed else _MIRRORED[sheet.cells.shape[1]]
+    mesh = Mesh(
+        points=points,
+        cells=np.ascontiguousarray(sheet.cells[:, order]),
+        region=sheet.region,
+        contour=sheet.rows[-1],
+        interface=sheet.rows[sheet.interface_row],
+        clamped=sheet.rows[0],
+        across=shape.normals(*_middles(sheet)),
+        patch=sheet.patch,
+        is_closed=shape.is_closed,
+        period=shape.period,
+        mirrors=mirrors,
+        along=sheet.along,
+        depth=sheet.depth,
+    )
+    # One point of each row: jitter puts the others a little above or below it.
+    lines = np.unique(sheet.depth[[row[0] for row in sheet.rows]])
+    thickness = np.diff(np.minimum(lines, 1.0) * white + np.maximum(lines - 1.0, 0.0) * T)
+    require_quality(mesh, shape.length / sheet.rows[-1].size, thickness)
+    return mesh
+
+
+def _middles(sheet: Sheet) -> tuple[FloatArray, FloatArray]:
+    """(n_cells,) position and depth of the middles of the cells."""
+    corners = sheet.cells[:, :3]
+    along = sheet.along[corners]
+    along = along[:, :1] + (along - along[:, :1] - np.round(along - along[:, :1]))
+    return along.mean(axis=1), sheet.depth[corners].mean(axis=1)
+
+
+def elliptic_ring(
+    semi_axes: tuple[float, float], hole_fraction: float, cortical_thickness: float, layers: Layers
+) -> Mesh:
+    """`layered_mesh` of an `Ellipse`."""
+    return layered_mesh(Ellipse(semi_axes, hole_fraction, cortical_thickness), layers)
+
+
+def periodic_strip(length: float, depth: float, cortical_thickness: float, layers: Layers) -> Mesh:
+    """`layered_mesh` of a `PeriodicStrip`."""
+    return layered_mesh(PeriodicStrip(length, depth, cortical_thickness), layers)

@@ -1,0 +1,35 @@
+"""Shapes, once each: a file that says where the places of a wall are, and its line in this list."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+from gyrify.mesh.shapes.ellipse import Ellipse
+from gyrify.mesh.shapes.shape import Shape
+from gyrify.mesh.shapes.strip import PeriodicStrip
+
+__all__ = ["SHAPES", "Ellipse", "PeriodicStrip", "Shape", "shape_of"]
+
+
+def _ellipse(geometry: Any) -> Ellipse:
+    return Ellipse(geometry.semi_axes, geometry.hole_fraction, geometry.cortical_thickness)
+
+
+def _strip(geometry: Any) -> PeriodicStrip:
+    return PeriodicStrip(geometry.length, geometry.depth, geometry.cortical_thickness)
+
+
+# By the value of ``geometry.shape``: what makes the shape of that section of a configuration.
+SHAPES: Final[dict[str, Callable[[Any], Shape]]] = {"ellipse": _ellipse, "circle": _ellipse, "strip": _strip}
+
+
+def shape_of(geometry: Any) -> Shape:
+    """The shape of a section ``geometry`` of a configuration.
+
+    Raises
+    ------
+    MeshError
+        If there is no such body.
+    """
+    return SHAPES[geometry.shape](geometry)
