@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import theory_curves as draw
 
 from gyrify.theory import (
     Annulus,
@@ -18,7 +19,6 @@ from gyrify.theory import (
     critical_wrinkle,
     crossings,
 )
-from gyrify.theory import figures as draw
 
 HERE = Path(__file__).parent
 PAGE = HERE.parent / "theory-onset.md"
