@@ -71,16 +71,15 @@ def measured_with(config: Config, closing_radius: float | None, gyrus_prominence
 
 
 def _measured(history: History, index: int, chosen: Metrics, *, earlier: bool = False) -> Measures:
-    x = history.points(index)
-    return measure_valid(
-        x[history.mesh.contour],
-        x[history.mesh.interface],
-        chosen.closing_radius,
-        chosen.gyrus_prominence,
-        chosen.samples,
-        history.mesh.period,
-        earlier=earlier,
-    )
+    number, lengths = state_number(index, len(history)), (chosen.closing_radius, chosen.gyrus_prominence)
+    key = ("measures", number, *lengths, chosen.samples, earlier)
+    if key not in history.known_measures:
+        x, mesh = history.points(number), history.mesh
+        history.known_measures[key] = measure_valid(
+            x[mesh.contour], x[mesh.interface], *lengths, chosen.samples, mesh.period, earlier=earlier
+        )
+    found: Measures = history.known_measures[key]
+    return found
 
 
 def volume_extremes(history: History, index: int = -1) -> tuple[float, float]:
@@ -90,9 +89,12 @@ def volume_extremes(history: History, index: int = -1) -> tuple[float, float]:
     themselves or of 1 below the smallest value.
     """
     number = state_number(index, len(history))
-    time = float(history.growth_times[number])
-    J, J_e = history.slice.least_volume_ratios(history.state_vector(number), time)
-    return float(J.min()), float(J_e.min())
+    if ("volumes", number) not in history.known_measures:
+        time = float(history.growth_times[number])
+        J, J_e = history.slice.least_volume_ratios(history.state_vector(number), time)
+        history.known_measures["volumes", number] = float(J.min()), float(J_e.min())
+    found: tuple[float, float] = history.known_measures["volumes", number]
+    return found
 
 
 def point_extremes(history: History, index: int = -1) -> tuple[float, float]:

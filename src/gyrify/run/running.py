@@ -78,7 +78,7 @@ class Run:
     @property
     def history(self) -> History:
         """What is stored so far."""
-        return History(self.journal)
+        return History(self.journal, self.problem)
 
     def grow(self, observers: Iterable[Observer] = (), watch: Watcher = lambda: None) -> None:
         """Grow from the last stored state to the end; whatever happens, how it ended is recorded.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -31,11 +32,17 @@ class History(Views, StabilityViews, Provenance):
     ----------
     journal : Journal
         The stored run.
+    problem : Slice, optional
+        The problem that is solved, where it is at hand; made from the journal's configuration otherwise.
     """
 
-    def __init__(self, journal: Journal) -> None:
+    def __init__(self, journal: Journal, problem: Slice | None = None) -> None:
         self.journal = journal
-        self.config = Config.from_toml(journal.meta("config"))
+        self.config = Config.from_toml(journal.meta("config")) if problem is None else problem.config
+        if problem is not None:
+            self.__dict__["slice"] = problem
+        # What was measured of stored states, which never change; see `gyrify.run.measuring`.
+        self.known_measures: dict[tuple[Any, ...], Any] = {}
 
     @staticmethod
     def load(folder: Pathlike) -> History:
