@@ -97,6 +97,17 @@ class Mesh:
         return int(self.cells.shape[0])
 
     @property
+    def middles(self) -> tuple[FloatArray, FloatArray]:
+        """(n_cells,) position along the layers, from 0 to 1, and depth of the middles of the cells [-]."""
+        if self.along.size == 0:
+            nowhere = np.full(self.n_cells, np.nan)
+            return nowhere, nowhere
+        corners = self.cells[:, : self.n_dim + 1]
+        along = self.along[corners]
+        along = along[:, :1] + (along - along[:, :1] - np.round(along - along[:, :1]))
+        return along.mean(axis=1) % 1.0, self.depth[corners].mean(axis=1)
+
+    @property
     def triangles(self) -> IntArray:
         """(n_triangles, 3) straight triangles between all nodes: the cells, or four per quadratic one."""
         if self.cells.shape[1] == 3:

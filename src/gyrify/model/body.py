@@ -2,41 +2,61 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from gyrify.config import Config
-from gyrify.energy.term import FloatArray
+from gyrify.energy.term import FloatArray, IntArray
+from gyrify.mesh import GREY, Mesh
 from gyrify.physics.growth import Growth
 from gyrify.physics.materials import Material, material_named
 
 
-def growth_of(config: Config, grey: NDArray[np.bool_], across: FloatArray) -> Growth:
-    """Growth of the points of a body.
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Where the integration points of a body are.
 
-    Parameters
+    Attributes
     ----------
-    config : Config
-        Every number of the run.
     grey : (n,) bool array
         Where there is grey matter.
     across : (n, n_dim) float array
         Unit reference direction across the layers.
+    along, depth : (n,) float array
+        Position along the layers, 0 to 1 and round again, and across them: 0 on the clamped side, 1 on the
+        interface, 2 on the contour [-]; NaN where the mesh has none.
     """
-    growth = config.growth
+
+    grey: NDArray[np.bool_]
+    across: FloatArray
+    along: FloatArray
+    depth: FloatArray
+
+    @staticmethod
+    def of(mesh: Mesh, cell: IntArray) -> Places:
+        """Middles of the cells about the integration points."""
+        along, depth = mesh.middles
+        return Places(mesh.region[cell] == GREY, np.asarray(mesh.across[cell]), along[cell], depth[cell])
+
+
+def growth_of(config: Config, places: Places) -> Growth:
+    """Growth of the points of a body."""
+    growth, grey = config.growth, places.grey
     return Growth(
         rate=np.where(grey, growth.rate, growth.rate_white),
         tangential=grey & (growth.law == "tangential"),
-        across=np.asarray(across),
+        across=places.across,
         law=growth.stretch,
         out_of_plane_rule=growth.out_of_plane,
         exponent=growth.out_of_plane_exponent,
     )
 
 
-def parameters_of(config: Config, grey: NDArray[np.bool_]) -> FloatArray:
-    """(n_parameters, n) parameters of the material at each point; arguments as in `growth_of`."""
-    given, law = config.material, material_of(config)
+def parameters_of(config: Config, places: Places) -> FloatArray:
+    """(n_parameters, n) parameters of the material at each point."""
+    grey, given, law = places.grey, config.material, material_of(config)
     stiff = law.parameters(given.young_modulus, given.poisson_ratio)
     soft = law.parameters(given.young_modulus_white, given.poisson_ratio_white)
     return np.stack([np.where(grey, g, w) for g, w in zip(stiff, soft, strict=True)])

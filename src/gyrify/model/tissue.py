@@ -14,7 +14,7 @@ from gyrify.energy.mean_dilatation import MeanDilatationEnergy, PatchPattern
 from gyrify.energy.term import FloatArray, IntArray
 from gyrify.errors import InvertedCellError
 from gyrify.mesh import GREY, Mesh
-from gyrify.model.body import growth_of, material_of, parameters_of
+from gyrify.model.body import Places, growth_of, material_of, parameters_of
 from gyrify.model.meshing import build_mesh
 
 
@@ -50,9 +50,9 @@ class Tissue:
     def __init__(self, config: Config, mesh: Mesh | None = None) -> None:
         self.config = config
         self.mesh = build_mesh(config) if mesh is None else mesh
-        grey = self.mesh.region[self.simplices.cell] == GREY
-        self.growth = growth_of(config, grey, self.mesh.across[self.simplices.cell])
-        self.material, self.parameters = material_of(config), parameters_of(config, grey)
+        places = Places.of(self.mesh, self.simplices.cell)
+        self.growth = growth_of(config, places)
+        self.material, self.parameters = material_of(config), parameters_of(config, places)
 
     @property
     def bulk_modulus(self) -> FloatArray:

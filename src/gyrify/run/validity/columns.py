@@ -19,7 +19,7 @@ from gyrify.energy.element import reference_element
 from gyrify.errors import SolveError
 from gyrify.mesh import GREY
 from gyrify.mesh.layered_grid import Layers, Sheet, build_sheet
-from gyrify.model.body import growth_of, material_of, parameters_of
+from gyrify.model.body import Places, growth_of, material_of, parameters_of
 from gyrify.physics.stress import response
 from gyrify.run.validity.bands import Bands
 
@@ -61,9 +61,14 @@ class MeshColumns:
         self._volumes = (np.abs(np.linalg.det(mapping)) * weights).ravel()
         self._cell = np.repeat(np.arange(len(sheet.cells)), weights.size)
         self._turn = turn[self._cell]
-        grey = sheet.region[self._cell] == GREY
-        self._growth = growth_of(config, grey, self._outwards(along + self._image)[self._cell])
-        self._material, self._parameters = material_of(config), parameters_of(config, grey)
+        places = Places(
+            grey=sheet.region[self._cell] == GREY,
+            across=self._outwards(along + self._image)[self._cell],
+            along=np.full(self._cell.size, np.nan),  # all columns are alike
+            depth=sheet.depth[sheet.cells[:, :3]].mean(axis=1)[self._cell],
+        )
+        self._growth, self._material = growth_of(config, places), material_of(config)
+        self._parameters = parameters_of(config, places)
         self._kappa = self._parameters[-1]
         self._isochoric = np.concatenate([self._parameters[:-1], np.zeros_like(self._parameters[-1:])])
         # What the mesh adds to the guess, as far as it is known from another growth time.
