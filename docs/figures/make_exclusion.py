@@ -55,9 +55,9 @@ def panel(axes: Axes, data: dict[str, Any], mesh: str, course: str) -> None:
         for i, number in enumerate(source.NUMBERS):
             found = data[mesh].get(f"{course} {exponent:g} {number:g}")
             if found:
-                cell(axes, i, j, found["holds"])
+                cell(axes, i, j, found[str(source.JUDGED[0])]["holds"])
     axes.set(xlim=(-0.6, len(source.NUMBERS) - 0.4), ylim=(-0.6, len(source.EXPONENTS) - 0.4))
-    axes.set_xticks(range(len(source.NUMBERS)), [f"{n:g}" for n in source.NUMBERS], **SMALL)
+    axes.set_xticks(range(len(source.NUMBERS)), [f"{n:g}" if n else "none" for n in source.NUMBERS], **SMALL)
     axes.set_yticks(range(len(source.EXPONENTS)), [f"{s:g}" for s in source.EXPONENTS], **SMALL)
     axes.set_title(f"{mesh}, {course} drag", **TEXT)
     axes.tick_params(length=0)
