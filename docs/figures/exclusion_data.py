@@ -50,7 +50,7 @@ ONSETS = {
     "E = 1, T = 3 mm": (EQUAL, 3.0),
     "E = 1, T = 8 mm": (EQUAL, 8.0),
 }
-FINE = tuple(i / 10 for i in range(11))
+FINE = (0.0, 0.14, 0.3, 0.6, 1.0)
 
 
 def known() -> dict[str, Any]:
@@ -122,10 +122,10 @@ def exact() -> None:
 
 def main(folder: Path, meshes: list[str]) -> None:
     """Compute what is not known."""
-    exact()
     with Simulations(folder, 2) as simulations:
         for mesh in meshes or MESHES:
             folded(simulations, mesh)
+    exact()
 
 
 if __name__ == "__main__":

@@ -54,7 +54,7 @@ def test_the_same_command_rebuilds_without_simulating(
     assert [row["ours"] for row in told["rows"][:2]] == ["3.592", "2.78; 1.71"]
     assert {"reading", "rows", "passed", "first_passed", "total", "wall_s", "warnings"} == set(told)
     assert all(row["note"] for row in told["rows"] if row["passed"] is False)
-    assert "generalised, linear, grown, drag 2.6" in told["reading"]
+    assert "generalised to the power 0.14, exponential, grown, no dissipation" in told["reading"]
     assert kept == {file: file.read_bytes() for file in kept}
 
 
