@@ -32,7 +32,7 @@ LAYERS = [
 ]
 # What kernels and readers may know, more strictly than by their layer.
 MAY_IMPORT = {
-    "config": {"base", "errors", "mesh", "physics"},
+    "config": {"base", "errors"},
     "physics": {"base"},
     "mesh": {"errors"},
     "theory": {"errors"},
@@ -44,7 +44,7 @@ MAY_IMPORT = {
 # Packages that import inside functions, and why. Anything else is written at the top of its file.
 LAZY = {
     "cli": "the command line answers at once: a command imports what it needs when it runs",
-    "config": "lists of words, and the HTML table for notebooks, are loaded when they are needed",
+    "config": "the HTML table is for notebooks only",
     "energy": "ipctk may be missing",
     "report": "a format of animations is loaded when it is asked for",
     "run": "warnings load what they look at",

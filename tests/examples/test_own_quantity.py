@@ -65,7 +65,10 @@ def test_files_have_it_with_its_unit(folder: Path) -> None:
     assert len(table[KEY].to_pylist()) == 2
 
 
-def test_report_notebook_table_and_study_show_it(registered, folder: Path, capsys) -> None:
+def test_report_notebook_table_and_study_show_it(
+    registered, folder: Path, capsys, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "240")
     history = gyrify.History.load(folder / "run")
     summary = summarise(history)
     (line,) = [line for line in numbers(summary) if line[0] == registered.label]

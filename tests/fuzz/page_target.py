@@ -10,7 +10,7 @@ from unittest import mock
 
 from target import Target
 
-from gyrify.report.html import page as assembly
+from gyrify.report.html import assembly
 
 # Elements of a page with one payload, whatever the text in it.
 _SCRIPTS = 3

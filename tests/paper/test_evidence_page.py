@@ -50,7 +50,7 @@ def test_the_page_has_both_places(script: ModuleType) -> None:
 
 def test_the_ranking_is_all_but_the_seeds(script: ModuleType, folder: Path) -> None:
     text = script.ranking(folder)
-    assert text.startswith("11 readings in 1 rounds")
+    assert text.startswith("12 readings in 1 rounds")
     for heading in ("With fitted constants", "What guidance brings", "What constants bring"):
         assert f"\n### {heading}\n" in text
     assert "± " not in text

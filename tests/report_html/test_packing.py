@@ -15,7 +15,8 @@ from hypothesis.extra.numpy import arrays
 
 from gyrify.config import Config
 from gyrify.errors import HistoryError
-from gyrify.report.html import page, run_page, write_page
+from gyrify.report.html import assembly as page
+from gyrify.report.html import run_page, write_page
 from gyrify.report.html.frames import frames_of, packed_frames, spread
 from gyrify.report.html.packing import Payload, coded
 from gyrify.report.html.shown_fields import SHOWN, colour_range, describe

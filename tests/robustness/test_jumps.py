@@ -17,7 +17,7 @@ from gyrify.solve.result import Result, Solution
 from gyrify.verify import verify
 from gyrify.verify.recheck import _check_contact
 
-FINE = Increment(0.0, 0.0, 0.0, 1.0, 1.0, 0, 0, True, 0.0, 0.0, 0.0, 0.0, 0.0)
+FINE = Increment(0.0, 0.0, 0.0, 1.0, 1.0, 0, 0, True, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 ROWS: list[dict[str, Any]] = [{"self_intersecting": False, "min_gap_mm": 1.0}] * 3
 
 

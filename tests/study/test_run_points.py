@@ -14,7 +14,7 @@ from small_study import FAILING, GROWTH, STIFFNESS, rows, study
 
 from gyrify import History, read_results, run_study, simulate, summarise
 from gyrify.errors import ConfigError, GyrifyError, HistoryError
-from gyrify.study import Point, Study, StudyProgress, book, final_state, run_points
+from gyrify.study import Point, Study, StudyProgress, final_state, known_points, run_points
 
 SMALL = study(GROWTH, STIFFNESS)
 
@@ -139,7 +139,7 @@ def test_a_broken_point_is_redone(done: Path, copy: Path, damage: str) -> None:
 
 
 def test_another_solver_invalidates_every_point(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in ("book", "solve"):
+    for module in ("known_points", "solve"):
         monkeypatch.setattr(f"gyrify.study.{module}.solver_version", lambda: "f" * 12)
     assert run_study(SMALL, copy).computed == 4
     assert set(read_results(copy)["solver_version"].to_pylist()) == {"f" * 12}
@@ -238,7 +238,7 @@ def test_one_process_at_a_time_works_on_a_study(tmp_path: Path) -> None:
 
 
 def test_results_are_written_while_points_go_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(book, "_PAUSE", 0.0)
+    monkeypatch.setattr(known_points, "_PAUSE", 0.0)
     seen = []
     run_study(
         SMALL,

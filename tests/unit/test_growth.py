@@ -35,6 +35,9 @@ class Pull:
     wobble: float = 0.0
     stiffens: float = 0.0
 
+    def evolved(self, before: State, after: State) -> State:  # noqa: ARG002
+        return after
+
     def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:  # noqa: ARG002
         goal = 10.0 * fraction + self.wobble * np.sin(12.0 * fraction)
         dead, k = fraction > self.refuses_after, self.stiffens

@@ -8,7 +8,7 @@ import pytest
 
 from gyrify import Config, critical_growth
 from gyrify.convergence.limit import judge
-from gyrify.paper import stability
+from gyrify.paper import loss_of_stability as stability
 from gyrify.paper.reading import Mechanics
 from gyrify.paper.space import edges
 from gyrify.report.onset_curve import onset_curve

@@ -44,7 +44,7 @@ def space(quick: bool) -> Figures:
 def _assembly(quick: bool) -> Figures:
     """Energy, gradient, Hessian and fill of gyrify's energy on tetrahedra."""
     tangent = Tangent(half_ellipsoid(8 if quick else 20))
-    n_cells, energy, u = tangent.energy.mu.size, tangent.energy, tangent.u
+    n_cells, energy, u = tangent.energy.weight.size, tangent.energy, tangent.u
     tasks = {
         "energy, gradient, Hessian, fill": lambda: energy.evaluate(u, 2),
         "energy": lambda: energy.evaluate(u, 0),

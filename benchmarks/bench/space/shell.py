@@ -100,11 +100,11 @@ class Tangent:
     def __init__(self, shell: Shell) -> None:
         simplices = Simplices.of(shell.points[shell.cells], shell.cells, shell.points.shape[0])
         n_cells = shell.cells.shape[0]
-        mu, kappa = (np.full(n_cells, m) for m in lame_parameters(YOUNG_MODULUS, POISSON_RATIO))
+        moduli = np.stack([np.full(n_cells, m) for m in lame_parameters(YOUNG_MODULUS, POISSON_RATIO)])
         F_g = np.broadcast_to(np.eye(3), (n_cells, 3, 3)).copy()
         kinematics = ElasticKinematics.of(simplices, F_g, np.ones(n_cells))
         pattern = CellPattern(shell.cells, 3)
-        self.energy = ElasticEnergy(kinematics, mu, kappa, kinematics.volumes * kinematics.J_g, pattern)
+        self.energy = ElasticEnergy(kinematics, moduli, kinematics.volumes * kinematics.J_g, pattern)
         self.u = np.zeros_like(shell.points)
         is_free = np.ones(shell.points.shape, dtype=bool)
         is_free[shell.inner] = False

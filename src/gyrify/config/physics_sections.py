@@ -16,27 +16,25 @@ STANDARD_AREA: Final = 4069.0
 STANDARD_THICKNESS: Final = 1.5
 
 
-def _shapes() -> list[str]:
-    from gyrify.mesh.shapes import SHAPES
-
-    return list(SHAPES)
-
-
-def _materials() -> list[str]:
-    from gyrify.physics.materials import MATERIALS  # numba takes its time, and most need none of it
-
-    return [material.name for material in MATERIALS]
-
-
+Shape = Annotated[
+    str,
+    Registered(("ellipse", "circle", "strip"), "gyrify.mesh.shapes", lambda module: module.SHAPES),
+]
+Law = Annotated[
+    str,
+    Registered(
+        ("neo_hookean",),
+        "gyrify.physics.materials",
+        lambda module: [material.name for material in module.MATERIALS],
+    ),
+]
 Stiffness = Annotated[float, Field(gt=0, le=1e15)]
 
 
 class Geometry(Section):
     """The slice: a hollow ellipse or circle, or a strip that is periodic in x and clamped below."""
 
-    shape: Annotated[str, Registered(("ellipse", "circle", "strip"), _shapes)] = setting(
-        "ellipse", "Shape of the slice.", source=f"{PAPER}, Fig. 1"
-    )
+    shape: Shape = setting("ellipse", "Shape of the slice.", source=f"{PAPER}, Fig. 1")
     area: float = setting(
         STANDARD_AREA,
         "Area inside the outer contour, hole included; ellipse and circle only.",
@@ -167,9 +165,7 @@ class MeshSettings(Section):
 class Material(Section):
     """Hyperelastic cortex and white matter."""
 
-    law: Annotated[str, Registered(("neo_hookean",), _materials)] = setting(
-        "neo_hookean", "Energy of the elastic deformation: a name in the list of materials."
-    )
+    law: Law = setting("neo_hookean", "Energy of the elastic deformation: a name in the list of materials.")
     young_modulus: float = setting(
         9210.87,
         "Young's modulus E_G of the cortex.",

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from types import ModuleType
 from typing import Any
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -17,17 +19,21 @@ class Registered:
     Attributes
     ----------
     standard : tuple of str
-        Words that are always there; to know them, nothing is loaded.
+        Words that the package comes with.
+    module : str
+        Where the list is. Whoever has added to it has imported this module; nobody else needs it.
     names : callable
-        Every word of the list.
+        Every word of the list, from the module.
     """
 
     standard: tuple[str, ...]
-    names: Callable[[], Iterable[str]]
+    module: str
+    names: Callable[[ModuleType], Iterable[str]]
 
     def words(self) -> tuple[str, ...]:
         """Every word, the standard ones first."""
-        return tuple(dict.fromkeys((*self.standard, *self.names())))
+        loaded = sys.modules.get(self.module)
+        return tuple(dict.fromkeys((*self.standard, *(self.names(loaded) if loaded else ()))))
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_after_validator_function(self._checked, handler(source))
@@ -38,6 +44,6 @@ class Registered:
         return {**handler(schema), "enum": list(self.words())}
 
     def _checked(self, word: str) -> str:
-        if word not in self.standard and word not in self.words():
+        if word not in self.words():
             raise ValueError("no such word")
         return word
