@@ -41,7 +41,7 @@ _LEFT_OUT = (
     "gyrify.model.meshing.build_mesh",
     "gyrify.threshold.critical_growth",
     "gyrify.convergence.converge",
-    "gyrify.paper.simulations.Bench",
+    "gyrify.paper.simulations.Simulations",
     "gyrify.study.known_points.Book.complete",
     "gyrify.report.plot.plot",
     "gyrify.report.animate.animate",

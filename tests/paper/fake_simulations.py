@@ -48,7 +48,7 @@ def made_up(config: Config) -> dict[str, Any]:
 _ENDS = ((1.3, 2.2), (0.5, 1.5), (0.0, 0.5), (0.5, 1.0), (1.1, 1.3))
 
 
-class FakeBench:
+class FakeSimulations:
     """Has what the paper's code uses of a simulations.
 
     Some mechanics fail at a certain case, as real ones do.

@@ -7,7 +7,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
-from fake_simulations import FakeBench
+from fake_simulations import FakeSimulations
 
 from gyrify.config import Config
 from gyrify.paper.ensemble import repeat
@@ -31,7 +31,7 @@ def script() -> ModuleType:
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("paper")
-    simulations = FakeBench(workers=2)
+    simulations = FakeSimulations(workers=2)
     found = search(simulations, Config(), rounds=1)
     ensembles = [repeat(simulations, Config(), c.reading, stability=False) for c in found.fitted.ranked[:2]]
     write_readings(found, ensembles, out)

@@ -6,7 +6,7 @@ from statistics import fmean, stdev
 from typing import get_args
 
 import pytest
-from fake_simulations import FakeBench
+from fake_simulations import FakeSimulations
 
 from gyrify.config import Config
 from gyrify.paper import Case, all_cases
@@ -54,7 +54,7 @@ def test_every_case_is_another_run() -> None:
 
 
 def test_the_index_of_the_reading_is_used_in_every_row() -> None:
-    simulations = FakeBench()
+    simulations = FakeSimulations()
     closing, hull = (
         reproduce(simulations, Config(), Reading(Mechanics(), Index(gi)), stability=False)
         for gi in get_args(GiDefinition)[:2]
@@ -65,7 +65,7 @@ def test_the_index_of_the_reading_is_used_in_every_row() -> None:
 
 
 def test_several_seeds() -> None:
-    simulations = FakeBench()
+    simulations = FakeSimulations()
     found = repeat(simulations, Config(), Reading(), stability=False)
     names = {entry.name: entry for entry in found.spreads()}
     gi = [member.rows[Case(EQUAL)].gi for member in found.members]
@@ -85,7 +85,7 @@ def test_several_seeds() -> None:
 
 
 def test_ensembles_are_put_in_order_by_their_mean() -> None:
-    simulations = FakeBench()
+    simulations = FakeSimulations()
     found = [repeat(simulations, Config(), Reading(one), stability=False) for one in SEVERAL]
     ordered = best_first(found)
     means = [one.score.mean for one in ordered]

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fake_simulations import FakeBench
+from fake_simulations import FakeSimulations
 from made_up import perfect, spoilt
 
 from gyrify.config import Config
@@ -112,7 +112,7 @@ def test_a_figure_has_a_panel_per_case_and_says_what_is_missing(layout: object) 
 
 def test_ranking(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("gyrify.paper.contender.INDICES", INDICES[::3])
-    simulations = FakeBench(workers=2)
+    simulations = FakeSimulations(workers=2)
     found = search(simulations, Config(), rounds=2)
     ensembles = [repeat(simulations, Config(), found.fitted.ranked[0].reading, (0, 3), stability=False)]
     files = write_readings(found, ensembles, tmp_path)
@@ -144,7 +144,7 @@ def test_ranking(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_search_that_ran_out_of_time_says_so() -> None:
-    found = search(FakeBench(), Config(), until=0.0)
+    found = search(FakeSimulations(), Config(), until=0.0)
     assert "Time ran out: run the same command again to go on." in readings_markdown(found, ())
 
 

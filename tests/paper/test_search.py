@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import optuna
 import pytest
-from fake_simulations import FakeBench
+from fake_simulations import FakeSimulations
 
 from gyrify.config import Config
 from gyrify.paper.candidate import Candidate
@@ -40,7 +40,7 @@ def _few_indices() -> Iterator[None]:
 
 @pytest.fixture(scope="module")
 def found(_few_indices: None) -> Search:
-    return search(FakeBench(workers=2), BASE, rounds=ROUNDS)
+    return search(FakeSimulations(workers=2), BASE, rounds=ROUNDS)
 
 
 def random_mechanics(n: int, *, is_fitted: bool = True) -> list[Mechanics]:
@@ -50,7 +50,7 @@ def random_mechanics(n: int, *, is_fitted: bool = True) -> list[Mechanics]:
 
 def exhausted(mechanics: Mechanics) -> dict[object, list[int]]:
     """Observations that hold with each choosing seed, by index, with everything run."""
-    simulations = FakeBench()
+    simulations = FakeSimulations()
     return {
         gi: [
             reproduce(simulations, BASE, Reading(mechanics, gi), seed=seed, stability=False).scoreboard.passed
@@ -60,8 +60,8 @@ def exhausted(mechanics: Mechanics) -> dict[object, list[int]]:
     }
 
 
-def raced(contender: Contender) -> FakeBench:
-    simulations = FakeBench()
+def raced(contender: Contender) -> FakeSimulations:
+    simulations = FakeSimulations()
     while points := contender.ask():
         simulations.run(points)
         contender.learn(simulations)
@@ -131,7 +131,7 @@ def test_given_up_means_not_above_the_level(mechanics: Mechanics) -> None:
         assert contender.impossible
         return
     simulations = raced(contender)
-    whole = FakeBench()
+    whole = FakeSimulations()
     for seed in CHOOSING:
         reproduce(whole, BASE, Reading(mechanics), seed=seed, stability=False)
     if contender.is_complete:
@@ -154,13 +154,13 @@ def test_a_reading_that_cannot_be_run_says_why() -> None:
 
 
 def test_the_search_is_the_same_with_any_number_of_workers(found: Search) -> None:
-    assert readings_csv(search(FakeBench(workers=1), BASE, rounds=ROUNDS)) == readings_csv(found)
+    assert readings_csv(search(FakeSimulations(workers=1), BASE, rounds=ROUNDS)) == readings_csv(found)
 
 
 def test_it_stops_in_time_and_goes_on(found: Search) -> None:
-    simulations, seen = FakeBench(), list[SearchProgress]()
+    simulations, seen = FakeSimulations(), list[SearchProgress]()
 
-    class Limited(FakeBench):
+    class Limited(FakeSimulations):
         def run(self, points: Sequence[Point]) -> None:
             super().run(points)
             if len(self.asked) > 200:
@@ -242,7 +242,7 @@ def test_a_mechanics_can_be_proposed_again(mechanics: Mechanics) -> None:
 
 
 def test_a_failed_run_fails_what_it_decides() -> None:
-    simulations, one = FakeBench(), Candidate(BASE, Mechanics(number=6.0))
+    simulations, one = FakeSimulations(), Candidate(BASE, Mechanics(number=6.0))
     while points := one.ask():
         simulations.run(points)
         one.learn(simulations)
@@ -260,7 +260,7 @@ def test_both_standard_slices_are_run_first() -> None:
 def test_whole_observations_are_worth_more_than_many_that_nearly_hold() -> None:
     one = Candidate(BASE, Mechanics())
     assert one.value(STANDARD_INDEX) == pytest.approx(2 + 16 * 0.25)
-    simulations = FakeBench()
+    simulations = FakeSimulations()
     while points := one.ask():
         simulations.run(points)
         one.learn(simulations)
