@@ -12,6 +12,7 @@ import os
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 from unittest import mock
 
@@ -21,6 +22,7 @@ from target import Target
 
 from gyrify.cli import main
 from gyrify.errors import GyrifyError
+from gyrify.solve.problem import State
 
 _CODES = (0, 1, 2, 3)
 # Names that commands write, as links to a file that is none of their business.
@@ -60,9 +62,13 @@ class _Slice:
     """What a run asks of its problem before it grows."""
 
     state_shape = (4, 2)
+    mesh = SimpleNamespace(n_dim=2)
 
     def __init__(self, config: object) -> None:
         self.config = config
+
+    def reference_state(self) -> State:
+        return State.reference(*self.state_shape)
 
 
 @contextlib.contextmanager
