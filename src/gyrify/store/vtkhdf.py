@@ -1,7 +1,7 @@
 """The derived history ``history.vtkhdf``: one unstructured grid, static in the reference state, with steps.
 
 The file follows the VTKHDF format (version 2) and is plain HDF5: 32-bit floats behind HDF5's own shuffle and
-deflate filters. To be small and quick to write, it uses what these allow (see also `gyrify.store.chunks`):
+deflate filters. To be small and quick to write, it uses what these allow:
 
 - a vector or tensor is chunked by component, and components that are always zero in the plane are never
   written (HDF5 reads them as zero);
@@ -28,7 +28,6 @@ from gyrify.config.run_sections import OutputField
 from gyrify.errors import HistoryError
 from gyrify.mesh import Mesh
 from gyrify.solve.types import FloatArray
-from gyrify.store.chunks import Layout, encoded
 from gyrify.store.derived import sha256_of
 from gyrify.store.disk_faults import storage_faults
 from gyrify.store.fields import CONTOUR_FIELDS, POINT_FIELDS, STATIC_FIELDS, UNITS, FieldMaker, StateFields
@@ -39,16 +38,48 @@ FORMAT_VERSION: Final = (2, 2)
 # VTK's numbers of triangles with three and six nodes.
 _TRIANGLES: Final = {3: 5, 6: 22}
 
-_COMPRESSED: Final = Layout(stored=(), rounded=False)
-_ON_CONTOUR: Final = Layout(stored=(), rounded=False, elsewhere=np.nan)
+
+@dataclass(frozen=True)
+class Layout:
+    """How the values of a field lie in the file.
+
+    Attributes
+    ----------
+    n_components : int
+        Components in the file; those not in ``written`` are zero.
+    written : tuple of int
+        Components that are written.
+    rounded : bool
+        Whether values are rounded to 16 significant bits.
+    elsewhere : float
+        Value of what is not written.
+    """
+
+    n_components: int = 1
+    written: tuple[int, ...] = (0,)
+    rounded: bool = True
+    elsewhere: float = 0.0
+
+    def stored(self, values: FloatArray) -> NDArray[np.float32]:
+        """Values as the file has them."""
+        single = values.astype("<f4")
+        if self.rounded:
+            bits = single.view("<u4")
+            bits += 0x80
+            bits &= 0xFFFFFF00
+        return single
+
+
+_EXACT: Final = Layout(rounded=False)
+_ON_CONTOUR: Final = Layout(rounded=False, elsewhere=np.nan)
 _LAYOUTS: Final[dict[OutputField, Layout]] = {
-    "displacement": Layout(3, (0, 1), stored=(0, 1, 2), rounded=False),
-    "growth_stretch": _COMPRESSED,
-    "J_growth": _COMPRESSED,
+    "displacement": Layout(3, (0, 1), rounded=False),
+    "growth_stretch": _EXACT,
+    "J_growth": _EXACT,
     "cauchy_stress": Layout(6, (0, 1, 2, 3)),
     "thickness": _ON_CONTOUR,
     "curvature": _ON_CONTOUR,
-    "contact_force": Layout(3, (0, 1), stored=(), rounded=False),
+    "contact_force": Layout(3, (0, 1), rounded=False),
 }
 
 
@@ -172,7 +203,7 @@ class _Target:
 
     Attributes
     ----------
-    dataset : h5py.h5d.DatasetID
+    dataset : h5py.Dataset
         Where to write.
     layout : Layout
         How to write.
@@ -182,7 +213,7 @@ class _Target:
         The values of a step that are written, if not all.
     """
 
-    dataset: h5py.h5d.DatasetID
+    dataset: h5py.Dataset
     layout: Layout
     starts: NDArray[np.int64]
     part: slice | None
@@ -205,14 +236,15 @@ class _Target:
             compression="gzip",
             compression_opts=1,
         )
-        return _Target(dataset.id, layout, starts, part)
+        return _Target(dataset, layout, starts, part)
 
     def write(self, step: int, components: tuple[FloatArray, ...]) -> None:
         """Write the components of one step."""
         first = int(self.starts[step]) + (0 if self.part is None else self.part.start)
         for component, values in zip(self.layout.written, components, strict=True):
-            chunk = encoded(values if self.part is None else values[self.part], self.layout)
-            self.dataset.write_direct_chunk((first, component)[: self.dataset.rank], chunk)
+            chunk = self.layout.stored(values if self.part is None else values[self.part])
+            rows = slice(first, first + chunk.size)
+            self.dataset[rows if self.dataset.ndim == 1 else (rows, component)] = chunk
 
 
 def _states(history: History, steps: list[int]) -> Iterator[StateFields]:
