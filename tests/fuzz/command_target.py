@@ -44,7 +44,7 @@ _LEFT_OUT = (
     "gyrify.threshold.critical_growth",
     "gyrify.convergence.converge",
     "gyrify.paper.simulations.Simulations",
-    "gyrify.study.known_points.Book.complete",
+    "gyrify.study.known_points.KnownPoints.complete",
     "gyrify.report.plot.plot",
     "gyrify.report.animate.animate",
     "gyrify.verify.verify",

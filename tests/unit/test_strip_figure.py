@@ -9,7 +9,7 @@ from gyrify.mesh.layered import periodic_strip
 from gyrify.mesh.layered_grid import Layers
 from gyrify.metrics.periodic import strip_closing_outline
 from gyrify.report import folded_figure
-from gyrify.report.drawn_slice import periodic_sheet
+from gyrify.report.drawn_slice import periodic_slice
 
 PERIOD = 30.0
 
@@ -24,8 +24,8 @@ def waved() -> tuple[np.ndarray, object]:
 
 def test_cells_lie_in_one_piece_and_cover_the_frame() -> None:
     points, mesh = waved()
-    sheet = periodic_sheet(points, mesh.cells, mesh.region, mesh.contour, mesh.interface, 10.0, PERIOD)
-    corners = sheet.points[sheet.cells]
+    drawing = periodic_slice(points, mesh.cells, mesh.region, mesh.contour, mesh.interface, 10.0, PERIOD)
+    corners = drawing.points[drawing.cells]
     assert np.ptp(corners[:, :, 0], axis=1).max() < 2.0
     a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     area = 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
@@ -33,9 +33,9 @@ def test_cells_lie_in_one_piece_and_cover_the_frame() -> None:
     # three periods of the same area
     thirds = area.reshape(3, -1).sum(axis=1)
     assert thirds == pytest.approx(thirds[0], rel=1e-12)
-    assert corners[:, :, 0].min() < sheet.low[0]
-    assert corners[:, :, 0].max() > sheet.high[0]
-    assert sheet.high[0] - sheet.low[0] == pytest.approx(PERIOD)
+    assert corners[:, :, 0].min() < drawing.low[0]
+    assert corners[:, :, 0].max() > drawing.high[0]
+    assert drawing.high[0] - drawing.low[0] == pytest.approx(PERIOD)
 
 
 def test_exposed_outline_spans_the_frame_above_the_contour() -> None:

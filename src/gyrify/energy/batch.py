@@ -18,7 +18,7 @@ from gyrify.physics.stress import coefficients
 # mypy: disable-error-code="no-untyped-def, no-untyped-call"
 
 # Points of a batch: enough for long loops, few enough to stay in the first cache.
-LANES = 64
+BATCH = 64
 
 
 @njit(cache=True, inline="always")

@@ -13,7 +13,7 @@ import numpy as np
 from gyrify.base.compiled import njit
 from gyrify.energy import batch, cell, dashpot, projection, tangents
 from gyrify.energy.batch import (
-    LANES,
+    BATCH,
     add_axial_force,
     add_axial_matrices,
     add_forces,
@@ -115,14 +115,14 @@ def _accumulate(n_dim: int, n_nodes: int, axial: int, material: int, digest: int
 
         The slope dF33/dw [1/mm] of each point is read where a common F33 is unknown (axial is 1).
         """
-        x, g = np.empty((n_nodes, n_dim, LANES)), np.empty((n_nodes, n_dim, LANES))
-        F, H = np.empty((n_dim, n_dim, LANES)), np.empty((n_dim + 0 * digest, n_dim, LANES))
-        f, h = np.empty((n_nodes, n_dim, LANES)), np.empty((n_nodes, n_dim, LANES))
-        det, I1, J, root = np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES)
-        moduli, entries = np.empty((5, LANES)), np.empty(LANES)
+        x, g = np.empty((n_nodes, n_dim, BATCH)), np.empty((n_nodes, n_dim, BATCH))
+        F, H = np.empty((n_dim, n_dim, BATCH)), np.empty((n_dim + 0 * digest, n_dim, BATCH))
+        f, h = np.empty((n_nodes, n_dim, BATCH)), np.empty((n_nodes, n_dim, BATCH))
+        det, I1, J, root = np.empty(BATCH), np.empty(BATCH), np.empty(BATCH), np.empty(BATCH)
+        moduli, entries = np.empty((5, BATCH)), np.empty(BATCH)
         value = 0.0
-        for first in range(0, cells.shape[0], LANES):
-            n = min(LANES, cells.shape[0] - first)
+        for first in range(0, cells.shape[0], BATCH):
+            n = min(BATCH, cells.shape[0] - first)
             gather(n_dim, n_nodes, first, n, u, cells, x)
             load(n_nodes, n_dim, first, n, gradients, g)
             load(n_dim, n_dim, first, n, base, F)
@@ -158,13 +158,13 @@ def _dissipate(n_dim: int, n_nodes: int, digest: int) -> Any:
         u, cells, base, gradients, previous, weight, order, project_psd, position, gradient, values
     ):
         """Add every point's Kelvin-Voigt energy, forces and matrix; ``previous`` is the strain before."""
-        x, g = np.empty((n_nodes, n_dim, LANES)), np.empty((n_nodes, n_dim, LANES))
-        F, B = np.empty((n_dim, n_dim, LANES)), np.empty((n_dim + 0 * digest, n_dim, LANES))
-        f, s = np.empty((n_nodes, n_dim, LANES)), np.empty((n_nodes, n_dim, LANES))
-        S, entries = np.empty((n_dim, n_dim, LANES)), np.empty(LANES)
+        x, g = np.empty((n_nodes, n_dim, BATCH)), np.empty((n_nodes, n_dim, BATCH))
+        F, B = np.empty((n_dim, n_dim, BATCH)), np.empty((n_dim + 0 * digest, n_dim, BATCH))
+        f, s = np.empty((n_nodes, n_dim, BATCH)), np.empty((n_nodes, n_dim, BATCH))
+        S, entries = np.empty((n_dim, n_dim, BATCH)), np.empty(BATCH)
         value = 0.0
-        for first in range(0, cells.shape[0], LANES):
-            n = min(LANES, cells.shape[0] - first)
+        for first in range(0, cells.shape[0], BATCH):
+            n = min(BATCH, cells.shape[0] - first)
             gather(n_dim, n_nodes, first, n, u, cells, x)
             load(n_nodes, n_dim, first, n, gradients, g)
             load(n_dim, n_dim, first, n, base, F)
@@ -197,12 +197,12 @@ def _largest_step(n_dim: int, n_nodes: int, digest: int) -> Any:
         In the plane the determinant is a quadratic in s with an exact root; in space the step is halved
         until nothing is inverted at its end.
         """
-        x, g = np.empty((n_nodes, n_dim, LANES)), np.empty((n_nodes, n_dim, LANES))
-        F, D = np.empty((n_dim + 0 * digest, n_dim, LANES)), np.empty((n_dim, n_dim, LANES))
-        H, scratch = np.empty((n_dim, n_dim, LANES)), np.empty(LANES)
+        x, g = np.empty((n_nodes, n_dim, BATCH)), np.empty((n_nodes, n_dim, BATCH))
+        F, D = np.empty((n_dim + 0 * digest, n_dim, BATCH)), np.empty((n_dim, n_dim, BATCH))
+        H, scratch = np.empty((n_dim, n_dim, BATCH)), np.empty(BATCH)
         largest = 1.0
-        for first in range(0, cells.shape[0], LANES):
-            n = min(LANES, cells.shape[0] - first)
+        for first in range(0, cells.shape[0], BATCH):
+            n = min(BATCH, cells.shape[0] - first)
             gather(n_dim, n_nodes, first, n, u, cells, x)
             load(n_nodes, n_dim, first, n, gradients, g)
             load(n_dim, n_dim, first, n, base, F)
@@ -224,11 +224,11 @@ def _grow(n_dim: int, n_nodes: int, digest: int) -> Any:
     @njit(cache=True, error_model="numpy")
     def grow(F_g, gradients, base, grown, det):  # type: ignore[no-untyped-def]
         """Write F_g^{-1}, the gradients with respect to the grown cell, and det F_g in the plane."""
-        g, h = np.empty((n_nodes, n_dim, LANES)), np.empty((n_nodes, n_dim, LANES))
-        F, H = np.empty((n_dim + 0 * digest, n_dim, LANES)), np.empty((n_dim, n_dim, LANES))
-        volume = np.empty(LANES)
-        for first in range(0, F_g.shape[0], LANES):
-            n = min(LANES, F_g.shape[0] - first)
+        g, h = np.empty((n_nodes, n_dim, BATCH)), np.empty((n_nodes, n_dim, BATCH))
+        F, H = np.empty((n_dim + 0 * digest, n_dim, BATCH)), np.empty((n_dim, n_dim, BATCH))
+        volume = np.empty(BATCH)
+        for first in range(0, F_g.shape[0], BATCH):
+            n = min(BATCH, F_g.shape[0] - first)
             load(n_dim, n_dim, first, n, F_g, F)
             load(n_nodes, n_dim, first, n, gradients, g)
             invert_all(n_dim, n, F, H, volume)

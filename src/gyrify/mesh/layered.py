@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from gyrify.mesh.layered_grid import Layers, Sheet, build_sheet
+from gyrify.mesh.layered_grid import LayeredGrid, Layers, build_grid
 from gyrify.mesh.mesh import FloatArray, Mesh
 from gyrify.mesh.quality import require_quality
 from gyrify.mesh.shapes import Ellipse, PeriodicStrip, Shape
@@ -37,38 +37,38 @@ def layered_mesh(shape: Shape, layers: Layers) -> Mesh:
         If a cell would be a sliver, or the shape has no mirrors that the split asks for.
     """
     white, T = shape.wall
-    sheet = build_sheet(layers, T / white, (white, T), shape.length, n_mirrors=shape.n_mirrors)
-    points = shape.points(sheet.along, sheet.depth)
-    points, mirrors = shape.mirrored(points, sheet.images) if sheet.images else (points, ())
-    order = slice(None) if shape.is_closed else _MIRRORED[sheet.cells.shape[1]]
+    grid = build_grid(layers, T / white, (white, T), shape.length, n_mirrors=shape.n_mirrors)
+    points = shape.points(grid.along, grid.depth)
+    points, mirrors = shape.mirrored(points, grid.images) if grid.images else (points, ())
+    order = slice(None) if shape.is_closed else _MIRRORED[grid.cells.shape[1]]
     mesh = Mesh(
         points=points,
-        cells=np.ascontiguousarray(sheet.cells[:, order]),
-        region=sheet.region,
-        contour=sheet.rows[-1],
-        interface=sheet.rows[sheet.interface_row],
-        clamped=sheet.rows[0],
-        across=shape.normals(*_middles(sheet)),
-        patch=sheet.patch,
+        cells=np.ascontiguousarray(grid.cells[:, order]),
+        region=grid.region,
+        contour=grid.rows[-1],
+        interface=grid.rows[grid.interface_row],
+        clamped=grid.rows[0],
+        across=shape.normals(*_middles(grid)),
+        patch=grid.patch,
         is_closed=shape.is_closed,
         period=shape.period,
         mirrors=mirrors,
-        along=sheet.along,
-        depth=sheet.depth,
+        along=grid.along,
+        depth=grid.depth,
     )
     # One point of each row: jitter puts the others a little above or below it.
-    lines = np.unique(sheet.depth[[row[0] for row in sheet.rows]])
+    lines = np.unique(grid.depth[[row[0] for row in grid.rows]])
     thickness = np.diff(np.minimum(lines, 1.0) * white + np.maximum(lines - 1.0, 0.0) * T)
-    require_quality(mesh, shape.length / sheet.rows[-1].size, thickness)
+    require_quality(mesh, shape.length / grid.rows[-1].size, thickness)
     return mesh
 
 
-def _middles(sheet: Sheet) -> tuple[FloatArray, FloatArray]:
+def _middles(grid: LayeredGrid) -> tuple[FloatArray, FloatArray]:
     """(n_cells,) position and depth of the middles of the cells."""
-    corners = sheet.cells[:, :3]
-    along = sheet.along[corners]
+    corners = grid.cells[:, :3]
+    along = grid.along[corners]
     along = along[:, :1] + (along - along[:, :1] - np.round(along - along[:, :1]))
-    return along.mean(axis=1), sheet.depth[corners].mean(axis=1)
+    return along.mean(axis=1), grid.depth[corners].mean(axis=1)
 
 
 def elliptic_ring(

@@ -1,4 +1,4 @@
-"""Layered sheet of triangles in parameters, before it is bent to a ring or laid out as a strip.
+"""Layered grid of triangles in parameters, before it is bent to a ring or laid out as a strip.
 
 A point has a depth, 0 (clamped) to 1 (interface) to 2 (contour), and a position along the layers, 0 to 1
 and round again. Layers and columns can be halved everywhere, or in the cortex alone: then the white layers
@@ -24,7 +24,7 @@ Element = Literal["linear", "quadratic", "mean_dilatation"]
 
 @dataclass(frozen=True)
 class Layers:
-    """How a sheet is divided.
+    """How a grid is divided.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class Layers:
 
 
 @dataclass(frozen=True, eq=False)
-class Sheet:
+class LayeredGrid:
     """Triangles in parameters.
 
     Attributes
@@ -76,7 +76,7 @@ class Sheet:
     interface_row : int
         Which row is the interface.
     images : tuple of int arrays
-        Of a symmetric sheet, the image (n_points,) of each point: about the position 0, and a quarter.
+        Of a symmetric grid, the image (n_points,) of each point: about the position 0, and a quarter.
     """
 
     depth: FloatArray
@@ -89,9 +89,9 @@ class Sheet:
     images: tuple[IntArray, ...] = ()
 
 
-def build_sheet(
+def build_grid(
     layers: Layers, cortical_share: float, unit: tuple[float, float], width: float, n_mirrors: int = 1
-) -> Sheet:
+) -> LayeredGrid:
     """Divide a wall.
 
     Parameters
@@ -103,13 +103,13 @@ def build_sheet(
     unit : (float, float)
         Thickness of the white wall and of the cortex [mm]: what a depth of 1 means.
     width : float
-        Length of the sheet [mm]: what a position of 1 means.
+        Length of the grid [mm]: what a position of 1 means.
     n_mirrors : {1, 2}
         Lines of symmetry where the split is symmetric: through the position 0, or there and at a quarter.
 
     Returns
     -------
-    Sheet
+    LayeredGrid
 
     Raises
     ------
@@ -139,35 +139,35 @@ def build_sheet(
     quads = [np.repeat(np.arange(n), len(part) // n) for part, n in zip(parts, columns[:-1], strict=True)]
     offsets = np.concatenate([[0], np.cumsum(columns[:-1])])
     patch = np.concatenate([offset + quad for offset, quad in zip(offsets, quads, strict=False)])
-    sheet = Sheet(depth, along, np.concatenate(parts), region, patch, rows, interface_row, images)
-    return add_midside_nodes(sheet) if layers.element == "quadratic" else sheet
+    grid = LayeredGrid(depth, along, np.concatenate(parts), region, patch, rows, interface_row, images)
+    return add_midside_nodes(grid) if layers.element == "quadratic" else grid
 
 
-def add_midside_nodes(sheet: Sheet) -> Sheet:
+def add_midside_nodes(grid: LayeredGrid) -> LayeredGrid:
     """Quadratic triangles: a node in the middle of each edge, in the order of VTK (01, 12, 20).
 
     Middles are taken in the parameters, so that edges follow the curved layers. Rows keep to the lines of
     the corners, and hold the nodes between them too.
     """
-    ends = np.stack([sheet.cells, np.roll(sheet.cells, -1, axis=1)], axis=2)
+    ends = np.stack([grid.cells, np.roll(grid.cells, -1, axis=1)], axis=2)
     edges, edge_of_cell = np.unique(np.sort(ends.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
     first, second = edges.T
-    step = sheet.along[second] - sheet.along[first]
+    step = grid.along[second] - grid.along[first]
     step -= np.round(step)
     # from the end that comes first, so that a middle on the seam lies after the last column
-    start = sheet.along[np.where(step >= 0.0, first, second)]
-    middle = sheet.depth.size + edge_of_cell.reshape(-1, 3)
-    node_of_edge = {(int(a), int(b)): sheet.depth.size + i for i, (a, b) in enumerate(edges)}
-    rows = tuple(_interleaved(row, node_of_edge) for row in sheet.rows)
-    return Sheet(
-        depth=np.concatenate([sheet.depth, 0.5 * (sheet.depth[first] + sheet.depth[second])]),
-        along=np.concatenate([sheet.along, start + 0.5 * np.abs(step)]),
-        cells=np.concatenate([sheet.cells, middle], axis=1),
-        region=sheet.region,
-        patch=sheet.patch,
+    start = grid.along[np.where(step >= 0.0, first, second)]
+    middle = grid.depth.size + edge_of_cell.reshape(-1, 3)
+    node_of_edge = {(int(a), int(b)): grid.depth.size + i for i, (a, b) in enumerate(edges)}
+    rows = tuple(_interleaved(row, node_of_edge) for row in grid.rows)
+    return LayeredGrid(
+        depth=np.concatenate([grid.depth, 0.5 * (grid.depth[first] + grid.depth[second])]),
+        along=np.concatenate([grid.along, start + 0.5 * np.abs(step)]),
+        cells=np.concatenate([grid.cells, middle], axis=1),
+        region=grid.region,
+        patch=grid.patch,
         rows=rows,
-        interface_row=sheet.interface_row,
-        images=tuple(with_middles(image, edges) for image in sheet.images),
+        interface_row=grid.interface_row,
+        images=tuple(with_middles(image, edges) for image in grid.images),
     )
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from gyrify.config.run_sections import OutputField
 from gyrify.mesh import GREY, WHITE
-from gyrify.report.drawn_slice import Sheet
+from gyrify.report.drawn_slice import DrawnSlice
 from gyrify.report.figures import boundary_loops, tissue_path
 from gyrify.report.layout import (
     COLOURS,
@@ -54,7 +54,7 @@ class Fill(Protocol):
     artists: list[Artist]
     colours: list[Colour]
 
-    def show(self, number: int, sheet: Sheet) -> None:
+    def show(self, number: int, drawing: DrawnSlice) -> None:
         """Take the shape, and the values, of a frame."""
 
 
@@ -80,13 +80,13 @@ class Scene:
 
     def __init__(self, states: Sequence[Shown], width: int, field: OutputField | None = None) -> None:
         self.states = states
-        low, high = common_frame([(state.sheet.low, state.sheet.high) for state in states])
+        low, high = common_frame([(state.drawing.low, state.drawing.high) for state in states])
         title = [states[0].name, *([states[0].note] if states[0].note else [])]
         head = 2.8 + LINE_MM * (len(title) + 2)
         self.figure, self._axes = page(low, high, _WIDTH_MM, header_mm=head)
         self.size = _fit(self.figure, width)
         self._fill: Fill = (
-            Tissues(self._axes, states[0].sheet) if field is None else Field(self.figure, states, field)
+            Tissues(self._axes, states[0].drawing) if field is None else Field(self.figure, states, field)
         )
         if field is None:
             legend(self.figure, tissue_handles())
@@ -123,10 +123,10 @@ class Scene:
 
     def _move(self, number: int) -> None:
         """Move everything to a frame."""
-        state, sheet = self.states[number], self.states[number].sheet
-        self._fill.show(number, sheet)
+        state, drawing = self.states[number], self.states[number].drawing
+        self._fill.show(number, drawing)
         for drawn, vertices in zip(
-            self._lines, (_joined(sheet.exposed), sheet.interface, sheet.contour), strict=True
+            self._lines, (_joined(drawing.exposed), drawing.interface, drawing.contour), strict=True
         ):
             drawn.set_data(vertices[:, 0], vertices[:, 1])
         for text, words in zip(self._texts, frame_text(state, self.states[-1].mark), strict=True):
@@ -136,19 +136,19 @@ class Scene:
 class Tissues:
     """Grey and white matter, each one shape."""
 
-    def __init__(self, axes: Axes, sheet: Sheet) -> None:
-        self._loops = [boundary_loops(sheet.cells[sheet.region == kind]) for kind in (WHITE, GREY)]
+    def __init__(self, axes: Axes, drawing: DrawnSlice) -> None:
+        self._loops = [boundary_loops(drawing.cells[drawing.region == kind]) for kind in (WHITE, GREY)]
         self._patches = [
-            PathPatch(tissue_path(sheet.points, loops), facecolor=COLOURS[name], edgecolor="none")
+            PathPatch(tissue_path(drawing.points, loops), facecolor=COLOURS[name], edgecolor="none")
             for loops, name in zip(self._loops, ("white", "grey"), strict=True)
         ]
         self.artists: list[Artist] = [axes.add_artist(patch) for patch in self._patches]
         self.colours = [_bytes(COLOURS[name]) for name in ("white", "grey")]
 
-    def show(self, number: int, sheet: Sheet) -> None:  # noqa: ARG002
+    def show(self, number: int, drawing: DrawnSlice) -> None:  # noqa: ARG002
         """Take the shape of a frame."""
         for patch, loops in zip(self._patches, self._loops, strict=True):
-            patch.set_path(tissue_path(sheet.points, loops))
+            patch.set_path(tissue_path(drawing.points, loops))
 
 
 class Field:
@@ -159,17 +159,17 @@ class Field:
         self._states = states
         self._values = [paint.factor * fields(state.history, state.index, (name,))[name] for state in states]
         scale = common_scale(paint, self._values)
-        of_triangles = per_triangle(first.history, self._values[0], first.sheet)
-        self._drawn = draw_field(figure.axes[0], first.sheet, of_triangles, paint, scale)
+        of_triangles = per_triangle(first.history, self._values[0], first.drawing)
+        self._drawn = draw_field(figure.axes[0], first.drawing, of_triangles, paint, scale)
         colour_bar(figure, (42.0, 9.5, 45.0, 2.2), self._drawn, paint.label, np.concatenate(self._values))
         self.artists: list[Artist] = [self._drawn]
         self.colours = [_bytes(colour) for colour in self._drawn.cmap(np.linspace(0.0, 1.0, _STEPS))]
 
-    def show(self, number: int, sheet: Sheet) -> None:
+    def show(self, number: int, drawing: DrawnSlice) -> None:
         """Take the shape and the values of a frame."""
-        corners: Any = sheet.points[sheet.cells]
+        corners: Any = drawing.points[drawing.cells]
         self._drawn.set_verts(corners)
-        self._drawn.set_array(per_triangle(self._states[number].history, self._values[number], sheet))
+        self._drawn.set_array(per_triangle(self._states[number].history, self._values[number], drawing))
 
 
 def frame_text(state: Shown, mark: str) -> tuple[str, str]:

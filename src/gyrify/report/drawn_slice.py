@@ -15,7 +15,7 @@ IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
-class Sheet:
+class DrawnSlice:
     """Triangles and lines to draw; lengths in mm.
 
     Attributes
@@ -53,22 +53,24 @@ class Sheet:
         return np.array([[self.low[0] - margin, self.low[1]], [self.high[0] + margin, self.low[1]]])
 
 
-def closed_sheet(
+def closed_slice(
     points: FloatArray,
     cells: IntArray,
     region: IntArray,
     contour: IntArray,
     interface: IntArray,
     radius: float,
-) -> Sheet:
+) -> DrawnSlice:
     """Return a slice in the frame of its exposed outline."""
     exposed = closing_of(points[contour], radius)
     outer, inner = (np.concatenate([line, line[:1]]) for line in (points[contour], points[interface]))
     low, high = exposed.min(axis=0), exposed.max(axis=0)
-    return Sheet(points, cells, region, outer, inner, [np.concatenate([exposed, exposed[:1]])], low, high)
+    return DrawnSlice(
+        points, cells, region, outer, inner, [np.concatenate([exposed, exposed[:1]])], low, high
+    )
 
 
-def periodic_sheet(
+def periodic_slice(
     points: FloatArray,
     cells: IntArray,
     region: IntArray,
@@ -76,7 +78,7 @@ def periodic_sheet(
     interface: IntArray,
     radius: float,
     period: float,
-) -> Sheet:
+) -> DrawnSlice:
     """Return three periods of a strip in a frame as wide as the one in the middle.
 
     A cell belongs to the period of its first corner, and its other corners to the nearest images.
@@ -94,7 +96,7 @@ def periodic_sheet(
     )
     exposed = strip_closing_outline(points[contour], period, radius)
     top = max(float(piece[:, 1].max()) for piece in exposed)
-    return Sheet(
+    return DrawnSlice(
         tiled,
         np.concatenate([own + k * n_points for k in (-1, 0, 1)]),
         np.tile(region, 3),

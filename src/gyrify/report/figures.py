@@ -17,7 +17,7 @@ from matplotlib.path import Path as Outline
 from numpy.typing import ArrayLike, NDArray
 
 from gyrify.mesh import GREY, WHITE
-from gyrify.report.drawn_slice import Sheet, closed_sheet, periodic_sheet
+from gyrify.report.drawn_slice import DrawnSlice, closed_slice, periodic_slice
 from gyrify.report.layout import (
     COLOURS,
     LINE_MM,
@@ -90,27 +90,27 @@ def folded_figure(
     triangles, tissue = np.asarray(cells, dtype=np.int64), np.asarray(region, dtype=np.int64)
     outer, inner = np.asarray(contour, dtype=np.int64), np.asarray(interface, dtype=np.int64)
     slice_arrays = (x, triangles, tissue, outer, inner, closing_radius)
-    sheet = closed_sheet(*slice_arrays) if period is None else periodic_sheet(*slice_arrays, period)
+    drawing = closed_slice(*slice_arrays) if period is None else periodic_slice(*slice_arrays, period)
     text = header(title, _index_text(gi, n_gyri, closing_radius), width_mm)
     text += [(mark, 7, "normal")] if mark else []
     holes = [x[[*loop, loop[0]]] for loop in _holes(triangles, outer)]
-    return _drawn(sheet, text, [sheet.floor] if sheet.is_periodic else holes, width_mm)
+    return _drawn(drawing, text, [drawing.floor] if drawing.is_periodic else holes, width_mm)
 
 
 def _drawn(
-    sheet: Sheet, text: list[tuple[str, int, str]], clamped: list[FloatArray], width_mm: float
+    drawing: DrawnSlice, text: list[tuple[str, int, str]], clamped: list[FloatArray], width_mm: float
 ) -> Figure:
-    """Draw what a sheet holds, under a header."""
-    figure, axes = page(sheet.low, sheet.high, width_mm, header_mm=2.8 + LINE_MM * len(text))
-    draw_tissues(axes, sheet.points, sheet.cells, sheet.region)
+    """Draw what a drawing holds, under a header."""
+    figure, axes = page(drawing.low, drawing.high, width_mm, header_mm=2.8 + LINE_MM * len(text))
+    draw_tissues(axes, drawing.points, drawing.cells, drawing.region)
     # Below the contour, so that the outline shows where it leaves the tissue.
-    for piece in sheet.exposed:
+    for piece in drawing.exposed:
         axes.add_line(line(piece, **OUTLINE))
-    for thin in (*clamped, sheet.interface):
+    for thin in (*clamped, drawing.interface):
         axes.add_line(line(thin, color=COLOURS["line"], linewidth=0.4))
-    axes.add_line(line(sheet.contour, color=COLOURS["line"], linewidth=0.9))
+    axes.add_line(line(drawing.contour, color=COLOURS["line"], linewidth=0.9))
     write_header(figure, text)
-    scale_bar(figure, sheet.low, sheet.high)
+    scale_bar(figure, drawing.low, drawing.high)
     edge: dict[str, Any] = {"edgecolor": COLOURS["line"], "linewidth": 0.4}
     grey = Patch(facecolor=COLOURS["grey"], label="grey matter", **edge)
     white = Patch(facecolor=COLOURS["white"], label="white matter", **edge)

@@ -16,7 +16,7 @@ from gyrify.store.files import refuse_link, whole_file
 from gyrify.store.lock import run_lock
 from gyrify.study.definition import Keep, Point, Study, as_study, require_keep
 from gyrify.study.executors import dask_executor
-from gyrify.study.known_points import Book
+from gyrify.study.known_points import KnownPoints
 from gyrify.study.outcome import StudyObserver, StudyResult
 from gyrify.study.stored_point import RUNS
 
@@ -106,10 +106,12 @@ def run_points(
             refuse_link(target / RUNS)
             (target / RUNS).mkdir(parents=True, exist_ok=True)
         stack.enter_context(run_lock(target, "study"))
-        book = Book(tuple(points), target, require_keep(keep), retry_failed, observer or (lambda _: None))
-        if scheduler is not None and book.unknown:
+        known = KnownPoints(
+            tuple(points), target, require_keep(keep), retry_failed, observer or (lambda _: None)
+        )
+        if scheduler is not None and known.unknown:
             executor = stack.enter_context(dask_executor(scheduler))
-        return book.complete(workers, executor)
+        return known.complete(workers, executor)
 
 
 def _require_sensible(

@@ -25,7 +25,7 @@ from gyrify.study.stored_point import RUNS
 _PAUSE: Final = 10.0
 
 
-class Book:
+class KnownPoints:
     """Keeps what is known of the points of a study while the others are computed."""
 
     def __init__(

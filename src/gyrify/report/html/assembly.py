@@ -29,7 +29,7 @@ _VIEWER: Final = (
     "camera.js",
     "pick.js",
     "viewer.js",
-    "furniture.js",
+    "overlays.js",
     "pointer.js",
     "player.js",
     "controls.js",

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from gyrify.config.run_sections import OutputField
-from gyrify.report.drawn_slice import FloatArray, Sheet
+from gyrify.report.drawn_slice import DrawnSlice, FloatArray
 from gyrify.report.layout import COLOURS, FONT
 from gyrify.report.plot.style import POINTS, add_axes, style_ticks
 
@@ -68,10 +68,10 @@ def common_scale(paint: Paint, values: Sequence[FloatArray], beyond: float = _BE
 
 
 def draw_field(
-    axes: Axes, sheet: Sheet, values: FloatArray, paint: Paint, scale: Normalize
+    axes: Axes, drawing: DrawnSlice, values: FloatArray, paint: Paint, scale: Normalize
 ) -> PolyCollection:
     """Fill each triangle with its colour; without seams, and as pixels in a file of lines."""
-    corners: Any = sheet.points[sheet.cells]
+    corners: Any = drawing.points[drawing.cells]
     shown = PolyCollection(
         corners,
         array=values,

@@ -21,7 +21,7 @@ def folded_plot(states: Sequence[Shown], width_mm: float | None) -> Figure:
         return _one(states[0], width_mm or SINGLE)
     width = width_mm or DOUBLE
     columns = grid_columns(len(states), width)
-    frames = [(state.sheet.low, state.sheet.high) for state in states]
+    frames = [(state.drawing.low, state.drawing.high) for state in states]
     labels = [Label((state.name, state.caption), state.note) for state in states]
     page = board(frames, labels, width, columns=columns)
     for axes, state in zip(page.panels, states, strict=True):

@@ -12,7 +12,7 @@ import numpy as np
 
 from gyrify.errors import ConfigError
 from gyrify.metrics import Measures
-from gyrify.report.drawn_slice import FloatArray, Sheet, closed_sheet, periodic_sheet
+from gyrify.report.drawn_slice import DrawnSlice, FloatArray, closed_slice, periodic_slice
 from gyrify.run.summary import measure_state
 from gyrify.run.validity.converged import convergence, mark
 from gyrify.store.history import History
@@ -51,7 +51,7 @@ class Shown:
         return measure_state(self.history, self.index)
 
     @cached_property
-    def sheet(self) -> Sheet:
+    def drawing(self) -> DrawnSlice:
         """Triangles and lines of the state."""
         return state_sheet(self.history, self.index)
 
@@ -128,20 +128,20 @@ def run_title(history: History) -> str:
     )
 
 
-def state_sheet(history: History, index: int) -> Sheet:
+def state_sheet(history: History, index: int) -> DrawnSlice:
     """Triangles and lines of a state of a slice, or of three periods of a strip."""
     mesh, radius = history.mesh, history.config.metrics.closing_radius
     x = history.points(index)
     region = mesh.triangle_region.astype(np.int64)
     arrays = (x, mesh.triangles, region, mesh.contour, mesh.interface, radius)
-    return closed_sheet(*arrays) if mesh.period is None else periodic_sheet(*arrays, mesh.period)
+    return closed_slice(*arrays) if mesh.period is None else periodic_slice(*arrays, mesh.period)
 
 
-def per_triangle(history: History, values: FloatArray, sheet: Sheet) -> FloatArray:
-    """Values of the cells for every triangle of a sheet: quadratic cells have four, strips three images."""
+def per_triangle(history: History, values: FloatArray, drawing: DrawnSlice) -> FloatArray:
+    """Values of the cells for every triangle of a drawing: quadratic cells have four, strips three images."""
     n_triangles = len(history.mesh.triangles)
     of_mesh = np.repeat(values, n_triangles // history.mesh.n_cells)
-    return np.tile(of_mesh, len(sheet.cells) // n_triangles)
+    return np.tile(of_mesh, len(drawing.cells) // n_triangles)
 
 
 def _names(histories: Sequence[History]) -> list[str]:

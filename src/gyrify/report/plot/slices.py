@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from gyrify.report.drawn_slice import FloatArray, Sheet
+from gyrify.report.drawn_slice import DrawnSlice, FloatArray
 from gyrify.report.figures import draw_tissues
 from gyrify.report.layout import CHARACTERS_PER_MM, COLOURS, LINE_MM, MARGIN_MM, OUTLINE, line, scale_bar
 from gyrify.report.plot.shown import Shown
@@ -145,26 +145,26 @@ def set_frame(axes: Axes, low: FloatArray, high: FloatArray) -> None:
 
 def draw_slice(axes: Axes, shown: Shown, *, tissues: bool, exposed: bool) -> None:
     """Draw tissues and lines of a state; with its exposed outline if asked for."""
-    sheet = shown.sheet
+    drawing = shown.drawing
     if tissues:
-        draw_tissues(axes, sheet.points, sheet.cells, sheet.region)
+        draw_tissues(axes, drawing.points, drawing.cells, drawing.region)
     if exposed:
-        for piece in sheet.exposed:
+        for piece in drawing.exposed:
             axes.add_line(line(piece, **OUTLINE))
-    draw_lines(axes, sheet, clamped_line(shown))
+    draw_lines(axes, drawing, clamped_line(shown))
 
 
-def draw_lines(axes: Axes, sheet: Sheet, clamped: FloatArray) -> None:
+def draw_lines(axes: Axes, drawing: DrawnSlice, clamped: FloatArray) -> None:
     """Draw contour, interface and where the tissue is held."""
-    for thin in (clamped, sheet.interface):
+    for thin in (clamped, drawing.interface):
         axes.add_line(line(thin, color=COLOURS["line"], linewidth=0.35))
-    axes.add_line(line(sheet.contour, color=COLOURS["line"], linewidth=0.6))
+    axes.add_line(line(drawing.contour, color=COLOURS["line"], linewidth=0.6))
 
 
 def clamped_line(shown: Shown) -> FloatArray:
     """The hole of a slice, or the floor of a strip."""
     mesh = shown.history.mesh
-    return shown.sheet.floor if shown.sheet.is_periodic else mesh.points[[*mesh.clamped, mesh.clamped[0]]]
+    return shown.drawing.floor if shown.drawing.is_periodic else mesh.points[[*mesh.clamped, mesh.clamped[0]]]
 
 
 def write_label(

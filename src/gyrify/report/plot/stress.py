@@ -45,7 +45,7 @@ def stress_plot(states: Sequence[Shown], width_mm: float | None, stress: str | N
     panels = [(state, name) for state in states for name in names]
     columns = min(len(panels), 3)
     page = board(
-        [(state.sheet.low, state.sheet.high) for state in states for _ in names],
+        [(state.drawing.low, state.drawing.high) for state in states for _ in names],
         [_label(state, name, len(states) == 1) for state, name in panels],
         width_mm or (DOUBLE if columns > 1 else SINGLE),
         columns=columns,
@@ -88,8 +88,8 @@ def _draw(page: Board, panels: Sequence[tuple[Shown, OutputField]], name: Output
     scale = common_scale(paint, values)
     drawn = []
     for (axes, state), array in zip(chosen, values, strict=True):
-        of_triangles = per_triangle(state.history, array, state.sheet)
-        drawn.append(draw_field(axes, state.sheet, of_triangles, paint, scale))
+        of_triangles = per_triangle(state.history, array, state.drawing)
+        drawn.append(draw_field(axes, state.drawing, of_triangles, paint, scale))
         draw_slice(axes, state, tissues=False, exposed=False)
     wide = page.panel_mm[0]
     box = (page.lefts[column] + 0.06 * wide, page.foot_mm - 2.5, 0.88 * wide, 2.5)

@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from gyrify.errors import ConfigError, HistoryError
-from gyrify.report.drawn_slice import FloatArray, Sheet, closed_sheet, periodic_sheet
+from gyrify.report.drawn_slice import DrawnSlice, FloatArray, closed_slice, periodic_slice
 from gyrify.report.figures import draw_tissues
 from gyrify.report.layout import OUTLINE, legend, line
 from gyrify.report.plot.folded import tissue_handles
@@ -37,16 +37,18 @@ class _Panel:
     keys: tuple[str, ...]
 
     @cached_property
-    def sheet(self) -> Sheet:
+    def drawing(self) -> DrawnSlice:
         mesh, radius = self.point.mesh, self.point.config.metrics.closing_radius
         region = mesh.triangle_region.astype(np.int64)
         arrays = (self.point.points, mesh.triangles, region, mesh.contour, mesh.interface, radius)
-        return closed_sheet(*arrays) if mesh.period is None else periodic_sheet(*arrays, mesh.period)
+        return closed_slice(*arrays) if mesh.period is None else periodic_slice(*arrays, mesh.period)
 
     @property
     def clamped(self) -> FloatArray:
         mesh = self.point.mesh
-        return self.sheet.floor if self.sheet.is_periodic else mesh.points[[*mesh.clamped, mesh.clamped[0]]]
+        return (
+            self.drawing.floor if self.drawing.is_periodic else mesh.points[[*mesh.clamped, mesh.clamped[0]]]
+        )
 
     @property
     def has_slice(self) -> bool:
@@ -107,21 +109,21 @@ def study_plot(
     keys = _named(rows)
     rows, columns = _arranged(rows)
     panels = [_Panel(row, final_state(folder, str(row["key"])), keys) for row in rows]
-    frames = [(panel.sheet.low, panel.sheet.high) for panel in panels if panel.has_slice]
+    frames = [(panel.drawing.low, panel.drawing.high) for panel in panels if panel.has_slice]
     if not frames:
         raise HistoryError(
             f"No run of the study {folder} has a state to draw.", f"See why with: gyrify table {folder}"
         )
     width = width_mm or DOUBLE
-    whole = [(panel.sheet.low, panel.sheet.high) if panel.has_slice else frames[0] for panel in panels]
+    whole = [(panel.drawing.low, panel.drawing.high) if panel.has_slice else frames[0] for panel in panels]
     columns = columns or grid_columns(len(panels), width)
     page = board(whole, [panel.label for panel in panels], width, columns=columns)
     for axes, panel in zip(page.panels, panels, strict=True):
         if panel.has_slice:
-            draw_tissues(axes, panel.sheet.points, panel.sheet.cells, panel.sheet.region)
-            for piece in panel.sheet.exposed:
+            draw_tissues(axes, panel.drawing.points, panel.drawing.cells, panel.drawing.region)
+            for piece in panel.drawing.exposed:
                 axes.add_line(line(piece, **OUTLINE))
-            draw_lines(axes, panel.sheet, panel.clamped)
+            draw_lines(axes, panel.drawing, panel.clamped)
     legend(page.figure, tissue_handles(), columns=3 if width >= DOUBLE else 2, middle_mm=0.5 * BAR_MM)
     return page.figure
 

@@ -90,7 +90,7 @@ def thickness_plot(states: Sequence[Shown], width_mm: float | None) -> Figure:
     """A row per run: the cortex coloured by thickness, and thickness along the contour."""
     profiles = [Profile.of(state) for state in states]
     scale = common_scale(_PAINT, [profile.thickness for profile in profiles], beyond=0.0)
-    frame = common_frame([(state.sheet.low, state.sheet.high) for state in states])
+    frame = common_frame([(state.drawing.low, state.drawing.high) for state in states])
     figure, slices, lines = _page(states, frame, width_mm or DOUBLE)
     drawn = [
         _draw_slice(axes, state, profile, scale)
@@ -143,7 +143,7 @@ def _page(
 
 def _draw_slice(axes: Axes, state: Shown, profile: Profile, scale: Normalize) -> PolyCollection:
     """Fill each column of the cortex with the thickness where it meets the contour, at rest."""
-    history, sheet = state.history, state.sheet
+    history, drawing = state.history, state.drawing
     mesh = history.mesh
     middles = mesh.cell_points.mean(axis=1)
     count = np.bincount(mesh.patch)[:, None]
@@ -155,9 +155,11 @@ def _draw_slice(axes: Axes, state: Shown, profile: Profile, scale: Normalize) ->
     at = shapely.line_locate_point(shapely.linestrings(ring), shapely.points(of_patches))
     of_column = np.interp(at, _arc(ring), profile.thickness)
     values = np.where(mesh.region == GREY, of_column[mesh.patch], np.nan)
-    draw_tissues(axes, sheet.points, sheet.cells, sheet.region)
-    shown = draw_field(axes, sheet, np.ma.masked_invalid(per_triangle(history, values, sheet)), _PAINT, scale)
-    draw_lines(axes, sheet, clamped_line(state))
+    draw_tissues(axes, drawing.points, drawing.cells, drawing.region)
+    shown = draw_field(
+        axes, drawing, np.ma.masked_invalid(per_triangle(history, values, drawing)), _PAINT, scale
+    )
+    draw_lines(axes, drawing, clamped_line(state))
     axes.plot(*history.contour(state.index)[0], marker="o", markersize=3.5, color=COLOURS["line"], zorder=4)
     return shown
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from gyrify.energy.element import reference_element
 from gyrify.errors import SolveError
 from gyrify.mesh import GREY
-from gyrify.mesh.layered_grid import Layers, Sheet, build_sheet
+from gyrify.mesh.layered_grid import LayeredGrid, Layers, build_grid
 from gyrify.model.body import Places, growth_of, material_of, parameters_of
 from gyrify.physics.stress import response
 from gyrify.run.validity.bands import Bands
@@ -48,36 +48,36 @@ class MeshColumns:
     def __init__(self, config: Config) -> None:
         self._config = config
         self._is_strip = config.geometry.shape == "strip"
-        self._sheet = sheet = self._build()
-        along = sheet.along[sheet.cells]
+        self._grid = grid = self._build()
+        along = grid.along[grid.cells]
         images = -np.round(along - along[:, :1]).astype(np.int64)
         # 0 for the four columns, 1 for those after them: the same for all cells of a patch.
         self._image = images - images.min(axis=1, keepdims=True)
-        points, turn = self._placed(along + self._image, sheet.depth[sheet.cells])
-        slopes, weights = reference_element(sheet.cells.shape[1], 2)
+        points, turn = self._placed(along + self._image, grid.depth[grid.cells])
+        slopes, weights = reference_element(grid.cells.shape[1], 2)
         mapping = np.einsum("cai,qaj->cqij", points, slopes)
-        shape = (-1, sheet.cells.shape[1], 2)
+        shape = (-1, grid.cells.shape[1], 2)
         self._gradients = np.einsum("qaj,cqji->cqai", slopes, np.linalg.inv(mapping)).reshape(shape)
         self._volumes = (np.abs(np.linalg.det(mapping)) * weights).ravel()
-        self._cell = np.repeat(np.arange(len(sheet.cells)), weights.size)
+        self._cell = np.repeat(np.arange(len(grid.cells)), weights.size)
         self._turn = turn[self._cell]
         places = Places(
-            grey=sheet.region[self._cell] == GREY,
+            grey=grid.region[self._cell] == GREY,
             across=self._outwards(along + self._image)[self._cell],
             along=np.full(self._cell.size, np.nan),  # all columns are alike
-            depth=sheet.depth[sheet.cells[:, :3]].mean(axis=1)[self._cell],
+            depth=grid.depth[grid.cells[:, :3]].mean(axis=1)[self._cell],
         )
         self._growth, self._material = growth_of(config, places), material_of(config)
         self._parameters = parameters_of(config, places)
         self._kappa = self._parameters[-1]
         self._isochoric = np.concatenate([self._parameters[:-1], np.zeros_like(self._parameters[-1:])])
         # What the mesh adds to the guess, as far as it is known from another growth time.
-        self._correction = np.zeros((sheet.depth.size, 2))
+        self._correction = np.zeros((grid.depth.size, 2))
 
     @cached_property
     def rest(self) -> FloatArray:
         """(n_points,) distance of the points from the middle, or above the floor of a strip [mm]."""
-        return self._outward(self._sheet.depth)
+        return self._outward(self._grid.depth)
 
     def is_stable(
         self, time: float, outward: FloatArray, axial_stretch: float, expected_mode: int | None
@@ -103,7 +103,7 @@ class MeshColumns:
         bands = self._smooth(time, outward, axial_stretch)
         return all(bands.is_definite(float(phase)) for phase in self._phases(expected_mode))
 
-    def _build(self) -> Sheet:
+    def _build(self) -> LayeredGrid:
         geometry, mesh = self._config.geometry, self._config.mesh
         layers = Layers(
             n_around=COLUMNS,
@@ -115,7 +115,7 @@ class MeshColumns:
             refine_cortex=mesh.refine_cortex,
         )
         T = geometry.cortical_thickness
-        return build_sheet(layers, T / self._white, (self._white, T), self._width)
+        return build_grid(layers, T / self._white, (self._white, T), self._width)
 
     @property
     def _n_around(self) -> int:
@@ -158,17 +158,17 @@ class MeshColumns:
     @cached_property
     def _place(self) -> NDArray[np.int64]:
         """(n_points, 2) place of each unknown, from the clamped side outwards; negative where it is held."""
-        sheet = self._sheet
-        place = np.full((sheet.depth.size, 2), -1)
-        order = np.lexsort((sheet.along, sheet.depth))
-        free = order[~np.isin(order, sheet.rows[0])]
+        grid = self._grid
+        place = np.full((grid.depth.size, 2), -1)
+        order = np.lexsort((grid.along, grid.depth))
+        free = order[~np.isin(order, grid.rows[0])]
         place[free] = np.arange(2 * free.size).reshape(-1, 2)
         return place
 
     @cached_property
     def _unknowns(self) -> NDArray[np.int64]:
         """(n, n_unknowns) places of the unknowns of the cell about each integration point."""
-        places = self._place[self._sheet.cells]
+        places = self._place[self._grid.cells]
         return np.asarray(places.reshape(len(places), -1)[self._cell])
 
     @cached_property
@@ -179,7 +179,7 @@ class MeshColumns:
     @cached_property
     def _band(self) -> tuple[int, int]:
         """Number of unknowns, and the largest distance between two of a patch."""
-        n, patch = int(self._place.max()) + 1, self._sheet.patch[self._cell]
+        n, patch = int(self._place.max()) + 1, self._grid.patch[self._cell]
         highest, lowest = np.full(patch.max() + 1, -1), np.full(patch.max() + 1, n)
         np.maximum.at(highest, patch, self._unknowns.max(axis=1))
         np.minimum.at(lowest, patch, np.where(self._unknowns < 0, n, self._unknowns).min(axis=1))
@@ -244,7 +244,7 @@ class MeshColumns:
     ) -> tuple[FloatArray, Bands]:
         """Forces on the unknowns, and their stiffness."""
         f33, weight = scalars
-        moved = u[self._sheet.cells].reshape(len(self._sheet.cells), -1)[self._cell]
+        moved = u[self._grid.cells].reshape(len(self._grid.cells), -1)[self._cell]
         F = base + np.einsum("cxp,cp->cx", B, moved).reshape(-1, 2, 2)
         J = np.linalg.det(F) * f33
         if np.any(J <= 0.0):
@@ -264,7 +264,7 @@ class MeshColumns:
         self, J: FloatArray, F: FloatArray, B: FloatArray, weight: FloatArray, bands: Bands
     ) -> FloatArray:
         """Pressure from the mean volume ratio of each patch; the products of its gradient go to the bands."""
-        patch = self._sheet.patch[self._cell]
+        patch = self._grid.patch[self._cell]
         total = np.bincount(patch, weight)
         mean = np.bincount(patch, weight * J) / total
         H = np.swapaxes(np.linalg.inv(F), 1, 2).reshape(-1, 4)

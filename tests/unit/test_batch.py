@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from numba import njit
 
-from gyrify.energy import batch as lanes
+from gyrify.energy import batch as batch
 
 
 @njit
 def roots(x, found):
     """Call what is inlined everywhere else."""
-    lanes.cube_roots(x.size, x, found)
+    batch.cube_roots(x.size, x, found)
 
 
 @pytest.mark.parametrize(("low", "high"), [(0.25, 4.0), (0.9, 1.1), (1e-6, 1e6), (3.9, 4.1), (1e-300, 1e300)])
@@ -33,7 +33,7 @@ def test_what_is_no_number_stays_none() -> None:
 @njit(error_model="numpy")
 def are_volumes(F, H, det):
     """Call what is inlined everywhere else."""
-    return lanes.invert(2, det.size, F, H, det)
+    return batch.invert(2, det.size, F, H, det)
 
 
 @pytest.mark.parametrize(
