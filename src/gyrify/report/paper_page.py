@@ -11,10 +11,10 @@ from gyrify.report.paper_layout import LAYOUTS
 from gyrify.report.paper_tables import FIRST, MARKS, SYMBOLS, by_first_rule, held, rule_told
 
 _STYLE: Final = """
-body { font: 15px/1.5 system-ui, sans-serif; color: #1f1f1f; max-width: 70rem;
+body { font: 15px/1.5 system-ui, sans-serif; color: #1f1f1f; max-width: 96rem;
   margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2rem; }
-table { border-collapse: collapse; width: 100%; font-size: 0.87rem; }
+p { max-width: 70rem; } table { border-collapse: collapse; width: 100%; font-size: 0.87rem; }
 th, td { text-align: left; vertical-align: top; padding: 0.35rem 0.6rem; border-bottom: 1px solid #ddd; }
 th { border-bottom: 2px solid #1f1f1f; }
 td.pass { color: #005a8c; font-weight: 600; white-space: nowrap; }
