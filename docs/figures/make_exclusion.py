@@ -27,6 +27,7 @@ GROUPS: dict[str, tuple[tuple[str, ...], str]] = {
 LINES = dict(
     zip(source.ONSETS, ("#0072B2", "#009E73", "#CC79A7", "#E69F00", "#D55E00", "#56B4E9"), strict=True)
 )
+TITLES = {"paper": "the paper's mesh"}
 COLUMNS, ROWS = 3, 2
 TEXT: dict[str, Any] = {"fontsize": 8, "family": FONT}
 SMALL: dict[str, Any] = {"fontsize": 7, "family": FONT}
@@ -59,7 +60,7 @@ def panel(axes: Axes, data: dict[str, Any], mesh: str, course: str) -> None:
     axes.set(xlim=(-0.6, len(source.NUMBERS) - 0.4), ylim=(-0.6, len(source.EXPONENTS) - 0.4))
     axes.set_xticks(range(len(source.NUMBERS)), [f"{n:g}" if n else "none" for n in source.NUMBERS], **SMALL)
     axes.set_yticks(range(len(source.EXPONENTS)), [f"{s:g}" for s in source.EXPONENTS], **SMALL)
-    axes.set_title(f"{mesh}, {course} drag", **TEXT)
+    axes.set_title(f"{TITLES.get(mesh, mesh)}, {course} drag", **TEXT)
     axes.tick_params(length=0)
     for side in axes.spines.values():
         side.set_visible(False)
@@ -74,6 +75,7 @@ def onsets(axes: Axes, data: dict[str, Any]) -> None:
             axes.plot(*points.T, color=colour, linewidth=1.4, label=name)
     for paper, colour in ((1.71, LINES["E = 1"]), (2.02, LINES["E = 1/1.36"])):
         axes.axvspan(0.95 * paper, 1.05 * paper, color=colour, alpha=0.15, linewidth=0)
+        axes.text(paper, 0.97, f"{paper:g} ± 5 %", ha="center", va="top", **SMALL)
     axes.axvline(3.6, color="#444444", linewidth=0.8, linestyle="--")
     axes.text(3.56, 0.5, "grown in the paper", rotation=90, va="center", ha="right", **SMALL)
     axes.set(xlim=(1.3, 4.2), ylim=(0, 1))
