@@ -75,7 +75,7 @@ def onsets(axes: Axes, data: dict[str, Any]) -> None:
             axes.plot(*points.T, color=colour, linewidth=1.4, label=name)
     for paper, colour in ((1.71, LINES["E = 1"]), (2.02, LINES["E = 1/1.36"])):
         axes.axvspan(0.95 * paper, 1.05 * paper, color=colour, alpha=0.15, linewidth=0)
-        axes.text(paper, 0.97, f"{paper:g} ± 5 %", ha="center", va="top", **SMALL)
+        axes.text(paper, 1.02, f"{paper:g} ± 5 %", ha="center", va="bottom", **SMALL)
     axes.axvline(3.6, color="#444444", linewidth=0.8, linestyle="--")
     axes.text(3.56, 0.5, "grown in the paper", rotation=90, va="center", ha="right", **SMALL)
     axes.set(xlim=(1.3, 4.2), ylim=(0, 1))
