@@ -187,7 +187,7 @@ def test_work_of_growth_at_rest_is_the_closed_form(tiny: Config):
         return float(density @ problem.simplices.volumes)
 
     expected = (energy(t + step) - energy(t - step)) / (2.0 * step)
-    assert _growth_power(problem, t, u) == pytest.approx(expected, rel=1e-6)
+    assert _growth_power(problem, t, u, {}) == pytest.approx(expected, rel=1e-6)
 
 
 def test_energy_balance_closes_and_its_defect_falls_with_the_square_of_the_increments(tiny: Config):
