@@ -69,7 +69,17 @@ class Measures:
 
     @classmethod
     def of(cls, shape: Deformed) -> Measures:
-        """Every quantity of a state."""
+        """Every quantity of a state.
+
+        Parameters
+        ----------
+        shape : Deformed
+            What is measured.
+
+        Returns
+        -------
+        Measures
+        """
         found = {}
         for quantity in MEASURED:
             if quantity.measure is None:
