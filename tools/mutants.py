@@ -96,7 +96,7 @@ def text_of(mutant: Mutant, tree: Path) -> str:
 def copy_tree(folder: Path) -> Path:
     """Copy of the sources and tests, without caches."""
     ignore = shutil.ignore_patterns("__pycache__", "*.nbi", "*.nbc")
-    for name in ("src", "tests", "tools"):
+    for name in ("src", "tests", "examples", "tools"):
         shutil.copytree(ROOT / name, folder / name, ignore=ignore)
     shutil.copy2(ROOT / "pyproject.toml", folder)
     return folder
