@@ -111,6 +111,24 @@ def test_equal_stretches_have_the_limit_of_the_difference_quotients(ogden: Mater
     assert matrices[0] == pytest.approx(K, abs=1e-10 * abs(K).max())  # the same E and nu
 
 
+def test_equal_stretches_under_stress_have_the_stiffness_of_the_other_form(ogden: Material) -> None:
+    """Scaled as a whole: the stretches in the plane are equal, and the stress is not zero."""
+    points, cells, _ = bodies.distorted_square(np.random.default_rng(2))
+    k, n = bodies.kinematics(points, cells), len(cells)
+    u = 0.2 * points
+    found = []
+    for material, alpha in ((NEO_HOOKEAN, None), (ogden, 2.0)):
+        term = ElasticEnergy(k, parameters(n, alpha), k.volumes, CellPattern(cells, 2), material)
+        found.append(dense_hessian(term.evaluate(u, 2).hessian, u.size))
+    assert found[1] == pytest.approx(found[0], abs=1e-7 * abs(found[0]).max())
+    F, f33 = np.tile(1.2 * np.eye(2), (n, 1, 1)), np.ones(n)
+    still = np.zeros(n)
+    stress, tangent = response(ogden, F, f33, parameters(n, 2.0), still)
+    expected = response(NEO_HOOKEAN, F, f33, parameters(n), still)
+    assert stress == pytest.approx(expected[0])
+    assert tangent == pytest.approx(expected[1], abs=1e-9)
+
+
 def test_stresses_of_arrays_agree_in_both_forms(ogden: Material, rng: np.random.Generator) -> None:
     n = 30
     F = np.eye(2) + 0.2 * rng.standard_normal((n, 2, 2))
