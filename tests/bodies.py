@@ -1,4 +1,4 @@
-"""Small bodies to test energies on."""
+"""Small bodies and meshes to test on."""
 
 from __future__ import annotations
 
@@ -9,6 +9,10 @@ from gyrify.energy.contact import ContactEnergy, ContactSurface
 from gyrify.energy.elastic import CellPattern, ElasticEnergy
 from gyrify.energy.kinematics import ElasticKinematics, Simplices
 from gyrify.energy.viscous import KelvinVoigtEnergy
+from gyrify.mesh import Mesh
+from gyrify.mesh.layered import layered_mesh
+from gyrify.mesh.layered_grid import Layers
+from gyrify.mesh.shapes import Ellipse, PeriodicStrip
 
 MU, KAPPA = 3.0, 20.0
 
@@ -87,3 +91,15 @@ def pinched_contact(stiffness: float = 7.0) -> tuple[ContactEnergy, np.ndarray, 
 def rotation(angle: float) -> np.ndarray:
     """Rotation by an angle in the plane."""
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+
+def elliptic_ring(
+    semi_axes: tuple[float, float], hole_fraction: float, cortical_thickness: float, layers: Layers
+) -> Mesh:
+    """`layered_mesh` of an `Ellipse`."""
+    return layered_mesh(Ellipse(semi_axes, hole_fraction, cortical_thickness), layers)
+
+
+def periodic_strip(length: float, depth: float, cortical_thickness: float, layers: Layers) -> Mesh:
+    """`layered_mesh` of a `PeriodicStrip`."""
+    return layered_mesh(PeriodicStrip(length, depth, cortical_thickness), layers)

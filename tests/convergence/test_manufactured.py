@@ -10,10 +10,10 @@ from functools import cache
 
 import numpy as np
 import pytest
+from bodies import elliptic_ring
 from manufactured import Manufactured
 from panels import ELEMENTS, Panel, rates, square, straight_square
 
-from gyrify.mesh.layered import elliptic_ring
 from gyrify.mesh.layered_grid import Layers
 
 LEVELS = {"linear": (16, 32, 64), "mean_dilatation": (16, 32, 64), "quadratic": (8, 16, 32)}

@@ -7,7 +7,7 @@ from typing import Any
 import bodies
 import numpy as np
 import pytest
-from bodies import KAPPA, MU
+from bodies import KAPPA, MU, elliptic_ring
 from differences import assert_derivatives, dense_hessian
 
 from gyrify.energy.axial import AxialElasticEnergy, axial_pattern
@@ -15,7 +15,6 @@ from gyrify.energy.elastic import CellPattern, ElasticEnergy
 from gyrify.energy.kinematics import ElasticKinematics, Simplices
 from gyrify.energy.mean_dilatation import MeanDilatationEnergy, PatchPattern
 from gyrify.mesh import Mesh
-from gyrify.mesh.layered import elliptic_ring
 from gyrify.mesh.layered_grid import Layers
 from gyrify.physics.materials import NEO_HOOKEAN
 from gyrify.physics.stress import energy_density, first_piola

@@ -5,13 +5,13 @@ from __future__ import annotations
 import bodies
 import numpy as np
 import pytest
+from bodies import elliptic_ring
 from differences import assert_derivatives, dense_hessian
 from oracle import area, complex_step, deformation
 
 from gyrify.energy.elastic import CellPattern
 from gyrify.energy.kinematics import ElasticKinematics, Simplices
 from gyrify.energy.viscous import DragEnergy, KelvinVoigtEnergy
-from gyrify.mesh.layered import elliptic_ring
 from gyrify.mesh.layered_grid import Layers
 
 STEPS = 10.0 ** -np.arange(1.0, 9.5, 0.5)

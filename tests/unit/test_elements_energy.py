@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from bodies import rotation
+from bodies import elliptic_ring, rotation
 
 from gyrify.config import Config
 from gyrify.energy.element import reference_element
@@ -12,7 +12,6 @@ from gyrify.energy.kinematics import Simplices
 from gyrify.energy.total import TotalEnergy
 from gyrify.errors import ConfigError
 from gyrify.mesh import Mesh
-from gyrify.mesh.layered import elliptic_ring
 from gyrify.mesh.layered_grid import Layers
 from gyrify.model.tissue import Tissue
 

@@ -6,11 +6,11 @@ import dataclasses
 
 import numpy as np
 import pytest
+from bodies import elliptic_ring
 
 from gyrify.errors import MeshError
 from gyrify.mesh import GREY, WHITE
 from gyrify.mesh.grading import layer_fractions
-from gyrify.mesh.layered import elliptic_ring
 from gyrify.mesh.layered_grid import Layers
 from gyrify.mesh.quality import triangle_quality
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from bodies import elliptic_ring
 
 from gyrify import Config, ConfigError, MeshError
 from gyrify.energy.total import FreePattern
 from gyrify.energy.unknowns import Unknowns
-from gyrify.mesh.layered import elliptic_ring
 from gyrify.mesh.layered_grid import Layers
 from gyrify.mesh.mesh import Mesh
 from gyrify.mesh.symmetry import Mirror, representatives, symmetric_field

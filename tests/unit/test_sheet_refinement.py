@@ -6,10 +6,10 @@ import itertools
 
 import numpy as np
 import pytest
+from bodies import elliptic_ring, periodic_strip
 
 from gyrify.errors import MeshError
 from gyrify.mesh import GREY, WHITE, Mesh
-from gyrify.mesh.layered import elliptic_ring, periodic_strip
 from gyrify.mesh.layered_grid import Layers
 from gyrify.mesh.quality import triangle_quality
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from bodies import periodic_strip
 
-from gyrify.mesh.layered import periodic_strip
 from gyrify.mesh.layered_grid import Layers
 from gyrify.metrics.periodic import strip_closing_outline
 from gyrify.report import folded_figure

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from bodies import periodic_strip
 
 from gyrify.config import Config
 from gyrify.energy.kinematics import Simplices
 from gyrify.errors import ConfigError, MeshError
 from gyrify.mesh import GREY, Mesh
-from gyrify.mesh.layered import periodic_strip
 from gyrify.mesh.layered_grid import Layers
 from gyrify.model.slice import Slice, build_mesh
 

@@ -183,16 +183,3 @@ def _symmetry(config: Config) -> str:
             'break the symmetry. Try mesh.split = "alternating".'
         )
     return ""
-
-
-_CHECKS: Final = (
-    _layers,
-    _white_matter,
-    _cells,
-    _growth,
-    _increments,
-    _branch,
-    _axial,
-    _transitions,
-    _symmetry,
-)

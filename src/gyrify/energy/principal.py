@@ -11,12 +11,12 @@ from gyrify.energy.cell import deform
 from gyrify.energy.projection import project_to_psd
 from gyrify.energy.tangents import add_matrix
 from gyrify.physics.materials.dispatch import density, derivatives
+from gyrify.physics.stress import EQUAL
 
 # numba compiles what follows without annotations.
 # mypy: disable-error-code="no-untyped-def, no-untyped-call"
 
 # Relative distance of two squared stretches below which their difference quotients take the limit.
-_EQUAL = 1e-6
 
 
 def principal_kernel(n_dim: int, n_nodes: int, axial: int, material: int, digest: int) -> Any:
@@ -126,7 +126,7 @@ def tangent(n_dim, axial, s, n, N, W, WW, C):
             along, across = 0.0, 0.0
             if a != b:
                 apart = s[a] * s[a] - s[b] * s[b]
-                if abs(apart) > _EQUAL * (s[a] * s[a] + s[b] * s[b]):
+                if abs(apart) > EQUAL * (s[a] * s[a] + s[b] * s[b]):
                     along, across = (s[a] * W[a] - s[b] * W[b]) / apart, (s[b] * W[a] - s[a] * W[b]) / apart
                 else:
                     along = 0.5 * (WW[a, a] - WW[a, b] + W[a] / s[a])

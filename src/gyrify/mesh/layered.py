@@ -9,7 +9,7 @@ import numpy as np
 from gyrify.mesh.layered_grid import LayeredGrid, Layers, build_grid
 from gyrify.mesh.mesh import FloatArray, Mesh
 from gyrify.mesh.quality import require_quality
-from gyrify.mesh.shapes import Ellipse, PeriodicStrip, Shape
+from gyrify.mesh.shapes import Shape
 
 # The grid's layers run counter-clockwise, with the outside on the right; along a strip it is on the left.
 _MIRRORED: Final = {3: [0, 2, 1], 6: [0, 2, 1, 5, 4, 3]}
@@ -69,15 +69,3 @@ def _middles(grid: LayeredGrid) -> tuple[FloatArray, FloatArray]:
     along = grid.along[corners]
     along = along[:, :1] + (along - along[:, :1] - np.round(along - along[:, :1]))
     return along.mean(axis=1), grid.depth[corners].mean(axis=1)
-
-
-def elliptic_ring(
-    semi_axes: tuple[float, float], hole_fraction: float, cortical_thickness: float, layers: Layers
-) -> Mesh:
-    """`layered_mesh` of an `Ellipse`."""
-    return layered_mesh(Ellipse(semi_axes, hole_fraction, cortical_thickness), layers)
-
-
-def periodic_strip(length: float, depth: float, cortical_thickness: float, layers: Layers) -> Mesh:
-    """`layered_mesh` of a `PeriodicStrip`."""
-    return layered_mesh(PeriodicStrip(length, depth, cortical_thickness), layers)

@@ -36,7 +36,7 @@ FloatArray = NDArray[np.float64]
 # Every point: what takes the place of a single one's number.
 _ALL = slice(None)
 # Relative distance of two squared stretches below which their difference quotients take the limit.
-_EQUAL = 1e-6
+EQUAL = 1e-6
 
 
 @njit(cache=True, inline="always")
@@ -198,7 +198,7 @@ def _response_by_stretches(
     W_a, W_b, _, W_aa, W_bb, _, W_ab, _, _ = _plain(material.derivatives)(*stretches, parameters, _ALL)
     W_a, W_b, W_ab = W_a + pressure * J / a, W_b + pressure * J / b, W_ab + pressure * J / (a * b)
     apart = a * a - b * b
-    is_near = np.abs(apart) <= _EQUAL * (a * a + b * b)
+    is_near = np.abs(apart) <= EQUAL * (a * a + b * b)
     quotient = np.where(is_near, 1.0, apart)
     along = np.where(is_near, 0.5 * (W_aa - W_ab + W_a / a), (a * W_a - b * W_b) / quotient)
     across = np.where(is_near, 0.5 * (W_aa - W_ab - W_a / a), (b * W_a - a * W_b) / quotient)

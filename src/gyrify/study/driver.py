@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack
+from pathlib import Path
 from typing import Any, Final
 
 from gyrify.base.arguments import Pathlike, as_path, whole_number
@@ -102,9 +103,7 @@ def run_points(
     _require_sensible(points, workers, executor, scheduler)
     target = as_path("folder", folder).absolute()
     with ExitStack() as stack:
-        with storage_faults(target, what="study"):
-            refuse_link(target / RUNS)
-            (target / RUNS).mkdir(parents=True, exist_ok=True)
+        _make_runs_folder(target)
         stack.enter_context(run_lock(target, "study"))
         known = KnownPoints(
             tuple(points), target, require_keep(keep), retry_failed, observer or (lambda _: None)
@@ -112,6 +111,12 @@ def run_points(
         if scheduler is not None and known.unknown:
             executor = stack.enter_context(dask_executor(scheduler))
         return known.complete(workers, executor)
+
+
+def _make_runs_folder(target: Path) -> None:
+    with storage_faults(target, what="study"):
+        refuse_link(target / RUNS)
+        (target / RUNS).mkdir(parents=True, exist_ok=True)
 
 
 def _require_sensible(
