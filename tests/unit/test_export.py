@@ -12,9 +12,11 @@ import pytest
 
 from gyrify.config import Config
 from gyrify.errors import ConfigError, HistoryError
+from gyrify.mesh import Mesh
 from gyrify.run.simulation import simulate
 from gyrify.store import History
-from gyrify.store.export import CSV_COLUMNS, export
+from gyrify.store.export import csv_columns, export
+from gyrify.store.external import cell_type, padded
 from gyrify.store.fields import fields
 
 needs_meshio = pytest.mark.skipif(
@@ -29,6 +31,34 @@ def assert_same_fields(found_point: dict, found_cell: dict, history: History, nu
             np.testing.assert_array_equal(found_point[name], expected, err_msg=name)
         else:
             np.testing.assert_array_equal(found_cell[name][0], values.reshape(len(values), -1).squeeze())
+
+
+@needs_meshio
+@pytest.mark.parametrize(("n_dim", "n_nodes"), [(2, 3), (2, 6), (3, 4), (3, 10)])
+def test_other_programs_know_the_cells_by_their_names(n_dim: int, n_nodes: int):
+    import meshio
+    from meshio._vtk_common import vtk_to_meshio_type
+    from meshio.xdmf.common import xdmf_to_meshio_type
+
+    points = np.zeros((n_nodes, n_dim))
+    found = cell_type(mesh_of(points, np.arange(n_nodes)[None]))
+    assert vtk_to_meshio_type[found.vtk] == xdmf_to_meshio_type[found.xdmf] == found.meshio
+    assert meshio._mesh.topological_dimension[found.meshio] == n_dim
+    assert meshio._mesh.num_nodes_per_cell[found.meshio] == n_nodes
+    assert padded(points).shape == (n_nodes, 3)
+
+
+def mesh_of(points: np.ndarray, cells: np.ndarray) -> Mesh:
+    none, n = np.empty(0, dtype=np.int64), len(cells)
+    across = np.zeros((n, points.shape[1]))
+    return Mesh(
+        points, cells, np.ones(n, dtype=np.int8), none, none, none, across, np.zeros(n, dtype=np.int64)
+    )
+
+
+def test_tables_have_a_column_for_each_axis():
+    assert csv_columns(3)[4:] == ("X_mm", "Y_mm", "Z_mm", "ux_mm", "uy_mm", "uz_mm")
+    assert csv_columns(2)[4:] == ("X_mm", "Y_mm", "ux_mm", "uy_mm")
 
 
 @needs_meshio
@@ -99,7 +129,7 @@ def test_csv_needs_no_library_and_gives_every_digit(folded: History, tmp_path: P
     (path,) = export(folded, "csv", tmp_path / "last.csv")
     with path.open(newline="") as file:
         rows = list(csv.DictReader(file))
-    assert tuple(rows[0]) == CSV_COLUMNS
+    assert ",".join(rows[0]) == "increment,growth_time,point,contour,X_mm,Y_mm,ux_mm,uy_mm"
     assert {row["increment"] for row in rows} == {str(len(folded) - 1)}
     u = np.array([[float(row["ux_mm"]), float(row["uy_mm"])] for row in rows])
     assert np.array_equal(u, folded.displacement())
@@ -110,7 +140,7 @@ def test_csv_needs_no_library_and_gives_every_digit(folded: History, tmp_path: P
 def test_csv_of_all_states(folded: History, tmp_path: Path):
     (path,) = export(folded, "csv", tmp_path / "all.csv", None)
     table = np.genfromtxt(path, delimiter=",", skip_header=1)
-    assert table.shape == (len(folded) * folded.mesh.n_points, len(CSV_COLUMNS))
+    assert table.shape == (len(folded) * folded.mesh.n_points, 8)
     assert np.array_equal(np.unique(table[:, 1]), folded.growth_times)
 
 

@@ -20,10 +20,12 @@ FAMILIES = (
     ("quadratic 72 × 7", "quadratic 144 × 13", "quadratic 288 × 27"),
     ("quadratic 0 drag=1.3 seed=0", "quadratic 1 drag=1.3 seed=0", "quadratic 2 drag=1.3 seed=0"),
     ("quadratic 0 branch followed", "quadratic 1 branch followed", "quadratic 2 branch followed"),
+    ("quadratic 72 × 7 drag=2.6", "quadratic 144 × 13 drag=2.6", "quadratic 288 × 27 drag=2.6"),
+    ("quadratic 0 drag=2.6 seed=0", "quadratic 1 drag=2.6 seed=0", "quadratic 2 drag=2.6 seed=0"),
 )
 
 
-@pytest.mark.parametrize(("family", "number"), [(FAMILIES[0], 0), (FAMILIES[1], 0), (FAMILIES[2], 1)])
+@pytest.mark.parametrize(("family", "number"), [*zip(FAMILIES, (0, 0, 1, 2, 2), strict=True)])
 def test_the_limits_are_those_that_were_measured(family: tuple[str, ...], number: int) -> None:
     runs = json.loads(MEASURED.read_text(encoding="utf-8"))["runs"]
     found = [runs[name]["gi_closing"] for name in family]

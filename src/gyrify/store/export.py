@@ -16,7 +16,7 @@ from gyrify.config.run_sections import OutputField
 from gyrify.errors import ConfigError, HistoryError
 from gyrify.store.contour_table import write_contour
 from gyrify.store.disk_faults import storage_faults
-from gyrify.store.external import numbered, padded, point_and_cell_data
+from gyrify.store.external import cell_type, numbered, padded, point_and_cell_data
 from gyrify.store.fields import known_fields
 from gyrify.store.files import fresh
 from gyrify.store.history import History
@@ -27,7 +27,6 @@ from gyrify.store.xdmf import write_xdmf
 
 Format = Literal["vtu", "xdmf", "csv", "stl", "contour"]
 
-CSV_COLUMNS: Final = ("increment", "growth_time", "point", "contour", "X_mm", "Y_mm", "ux_mm", "uy_mm")
 NAMES: Final[dict[Format, str]] = {
     "vtu": "export.vtu",
     "xdmf": "export.xdmf",
@@ -119,6 +118,12 @@ def stored_states(history: History, index: Index | None) -> list[int]:
     return states
 
 
+def csv_columns(n_dim: int) -> tuple[str, ...]:
+    """Columns of the table of points in a number of dimensions."""
+    reference = [f"{axis}_mm" for axis in "XYZ"[:n_dim]]
+    return ("increment", "growth_time", "point", "contour", *reference, *(f"u{x.lower()}" for x in reference))
+
+
 def _write_csv(history: History, path: Path, states: list[int]) -> list[Path]:
     """Rows of all points of all states; the column ``contour`` counts along the contour, empty elsewhere."""
     mesh, times = history.mesh, history.growth_times
@@ -127,7 +132,7 @@ def _write_csv(history: History, path: Path, states: list[int]) -> list[Path]:
         place[point] = str(order)
     with fresh(path).open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(CSV_COLUMNS)
+        writer.writerow(csv_columns(mesh.n_dim))
         for number in states:
             time, values = float(times[number]), np.hstack([mesh.points, history.displacement(number)])
             writer.writerows(
@@ -141,7 +146,8 @@ def _write_vtu(history: History, path: Path, states: list[int], names: tuple[Out
     files = numbered(path, states)
     for file, number in zip(files, states, strict=True):
         point_data, cell_data = point_and_cell_data(history, number, names)
-        grid = meshio.Mesh(padded(history.mesh.points), _cells(history), point_data, cell_data)
+        cells = [(cell_type(history.mesh).meshio, history.mesh.cells)]
+        grid = meshio.Mesh(padded(history.mesh.points), cells, point_data, cell_data)
         meshio.write(fresh(file), grid, file_format="vtu")
     if len(files) == 1:
         return files
@@ -156,10 +162,6 @@ def _write_vtu(history: History, path: Path, states: list[int], names: tuple[Out
         f'<VTKFile type="Collection" version="0.1">\n{collection}</VTKFile>\n', encoding="utf-8"
     )
     return [series, *files]
-
-
-def _cells(history: History) -> list[tuple[str, Any]]:
-    return [("triangle" if history.mesh.cells.shape[1] == 3 else "triangle6", history.mesh.cells)]
 
 
 def _meshio(format: str) -> Any:

@@ -1,15 +1,39 @@
-"""What files for other programs have in common: vectors in space, fields by place, names of several files."""
+"""What files for other programs share: names of cells and of files, vectors in space, fields by place."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from gyrify.config.run_sections import OutputField
+from gyrify.mesh import Mesh
 from gyrify.solve.types import FloatArray
 from gyrify.store.fields import POINT_FIELDS, fields
 from gyrify.store.history import History
+
+
+class CellType(NamedTuple):
+    """What other programs call a simplex: VTK's number, the names of meshio and of XDMF."""
+
+    vtk: int
+    meshio: str
+    xdmf: str
+
+
+# By dimension and number of nodes.
+_CELL_TYPES: Final = {
+    (2, 3): CellType(5, "triangle", "Triangle"),
+    (2, 6): CellType(22, "triangle6", "Triangle_6"),
+    (3, 4): CellType(10, "tetra", "Tetrahedron"),
+    (3, 10): CellType(24, "tetra10", "Tetrahedron_10"),
+}
+
+
+def cell_type(mesh: Mesh) -> CellType:
+    """What other programs call the cells of a mesh."""
+    return _CELL_TYPES[mesh.n_dim, mesh.cells.shape[1]]
 
 
 def point_and_cell_data(
@@ -27,8 +51,8 @@ def point_and_cell_data(
 
 
 def padded(vectors: FloatArray) -> FloatArray:
-    """(n, 3) vectors with a zero third component."""
-    return np.pad(vectors, ((0, 0), (0, 1)))
+    """(n, 3) vectors; those of the plane with a zero third component."""
+    return np.pad(vectors, ((0, 0), (0, 3 - vectors.shape[1])))
 
 
 def numbered(path: Path, states: list[int]) -> list[Path]:

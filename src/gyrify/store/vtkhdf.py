@@ -30,13 +30,12 @@ from gyrify.mesh import Mesh
 from gyrify.solve.types import FloatArray
 from gyrify.store.derived import sha256_of
 from gyrify.store.disk_faults import storage_faults
+from gyrify.store.external import cell_type, padded
 from gyrify.store.fields import CONTOUR_FIELDS, POINT_FIELDS, STATIC_FIELDS, UNITS, FieldMaker, StateFields
 from gyrify.store.files import whole_file
 from gyrify.store.history import History
 
 FORMAT_VERSION: Final = (2, 2)
-# VTK's numbers of triangles with three and six nodes.
-_TRIANGLES: Final = {3: 5, 6: 22}
 
 
 @dataclass(frozen=True)
@@ -72,15 +71,23 @@ class Layout:
 
 _EXACT: Final = Layout(rounded=False)
 _ON_CONTOUR: Final = Layout(rounded=False, elsewhere=np.nan)
-_LAYOUTS: Final[dict[OutputField, Layout]] = {
-    "displacement": Layout(3, (0, 1), rounded=False),
-    "growth_stretch": _EXACT,
-    "J_growth": _EXACT,
-    "cauchy_stress": Layout(6, (0, 1, 2, 3)),
-    "thickness": _ON_CONTOUR,
-    "curvature": _ON_CONTOUR,
-    "contact_force": Layout(3, (0, 1), rounded=False),
-}
+# In the plane the shear stresses 23 and 13 are zero.
+_STRESSES: Final = {2: (0, 1, 2, 3), 3: (0, 1, 2, 3, 4, 5)}
+
+
+def _layout(name: OutputField, n_dim: int) -> Layout:
+    """How the values of a field lie in the file, in a number of dimensions."""
+    vector = Layout(3, tuple(range(n_dim)), rounded=False)
+    layouts: dict[OutputField, Layout] = {
+        "displacement": vector,
+        "growth_stretch": _EXACT,
+        "J_growth": _EXACT,
+        "cauchy_stress": Layout(6, _STRESSES[n_dim]),
+        "thickness": _ON_CONTOUR,
+        "curvature": _ON_CONTOUR,
+        "contact_force": vector,
+    }
+    return layouts.get(name, Layout())
 
 
 def write_vtkhdf(
@@ -146,10 +153,10 @@ def _write_geometry(root: h5py.Group, history: History, steps: list[int]) -> Non
     root["NumberOfPoints"] = np.array([mesh.n_points])
     root["NumberOfCells"] = np.array([mesh.n_cells])
     root["NumberOfConnectivityIds"] = np.array([mesh.cells.size])
-    root["Points"] = np.pad(mesh.points, ((0, 0), (0, 1)))
+    root["Points"] = padded(mesh.points)
     root["Connectivity"] = mesh.cells.ravel()
     root["Offsets"] = np.arange(mesh.n_cells + 1) * n_nodes
-    root["Types"] = np.full(mesh.n_cells, _TRIANGLES[n_nodes], dtype=np.uint8)
+    root["Types"] = np.full(mesh.n_cells, cell_type(mesh).vtk, dtype=np.uint8)
     group = root.create_group("Steps")
     group.attrs["NSteps"] = n_steps
     group["Values"] = history.growth_times[steps]
@@ -181,7 +188,8 @@ def _write_fields(
         if name in STATIC_FIELDS:
             data[name], starts = mesh.region.astype(np.uint8), np.zeros_like(starts)
         else:
-            targets[name] = _Target.create(data, name, starts, n_values, _written_part(mesh, name))
+            layout, part = _layout(name, mesh.n_dim), _written_part(mesh, name)
+            targets[name] = _Target.create(data, name, layout, starts, n_values, part)
         root[f"Steps/{place}DataOffsets/{name}"] = starts
         data[name].attrs["unit"] = UNITS[name]
     for step, state in enumerate(_states(history, steps)):
@@ -220,10 +228,14 @@ class _Target:
 
     @staticmethod
     def create(
-        group: h5py.Group, name: OutputField, starts: NDArray[np.int64], n_values: int, part: slice | None
+        group: h5py.Group,
+        name: str,
+        layout: Layout,
+        starts: NDArray[np.int64],
+        n_values: int,
+        part: slice | None,
     ) -> _Target:
         """Empty dataset."""
-        layout = _LAYOUTS.get(name, Layout())
         n_dims = 1 if layout.n_components == 1 else 2
         length = n_values if part is None else part.stop - part.start
         dataset = group.create_dataset(

@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 import h5py
 
 from gyrify.config.run_sections import OutputField
-from gyrify.store.external import padded, point_and_cell_data
+from gyrify.store.external import cell_type, padded, point_and_cell_data
 from gyrify.store.files import fresh
 from gyrify.store.history import History
 
@@ -44,10 +44,8 @@ def write_xdmf(history: History, path: Path, states: list[int], names: tuple[Out
 
 
 def _write_mesh(grid: ElementTree.Element, file: h5py.File, history: History) -> None:
-    kind = "Triangle" if history.mesh.cells.shape[1] == 3 else "Triangle_6"
-    topology = ElementTree.SubElement(
-        grid, "Topology", TopologyType=kind, NumberOfElements=str(history.mesh.n_cells)
-    )
+    kind, n_cells = cell_type(history.mesh).xdmf, str(history.mesh.n_cells)
+    topology = ElementTree.SubElement(grid, "Topology", TopologyType=kind, NumberOfElements=n_cells)
     _refer(topology, file["cells"])
     _refer(ElementTree.SubElement(grid, "Geometry", GeometryType="XYZ"), file["points"])
 
