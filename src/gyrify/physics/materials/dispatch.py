@@ -1,8 +1,8 @@
 """Calls of a material from compiled code: which one is a constant there, so that the choice costs nothing.
 
 Kernels capture the place of their material in the list as a whole number, and numba, which compiles a kernel
-for each such number, finds the material's own functions here. (A captured function would be compiled anew in
-every process: numba's cache knows it from no other.)
+for each such number, finds the material's own functions here; put in line, they keep the loops over points
+fast. (A captured function would be compiled anew in every process: numba's cache knows it from no other.)
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def derivatives(material, x, y, z, p, c):
     return MATERIALS[material].derivatives(x, y, z, p, c)
 
 
-@overload(density, prefer_literal=True)
+@overload(density, prefer_literal=True, inline="always")
 def _density(material, x, y, z, p, c) -> Any:  # noqa: ARG001
     chosen = MATERIALS[material.literal_value].density
 
@@ -36,7 +36,7 @@ def _density(material, x, y, z, p, c) -> Any:  # noqa: ARG001
     return implementation
 
 
-@overload(derivatives, prefer_literal=True)
+@overload(derivatives, prefer_literal=True, inline="always")
 def _derivatives(material, x, y, z, p, c) -> Any:  # noqa: ARG001
     chosen = MATERIALS[material.literal_value].derivatives
 
