@@ -11,7 +11,7 @@ from test_newton import DIAGONAL, NONE, system
 from gyrify.energy.term import Evaluation, Hessian
 from gyrify.energy.total import TotalEnergy
 from gyrify.errors import SolveError
-from gyrify.solve.definite import DefiniteHessian
+from gyrify.solve.definite import PATIENCE, DefiniteHessian
 from gyrify.solve.linear import SuperLU, linear_solver
 from gyrify.solve.shift import shifted_factor
 from gyrify.solve.stability import Tangent
@@ -88,6 +88,19 @@ def test_the_next_step_begins_one_shift_below_the_last_one() -> None:
         hessian.factor(u)
         taus.append(hessian.tau)
     assert taus == pytest.approx([needed / 4.0**k for k in (1, 2, 3, 4)])
+
+
+def test_a_minimisation_that_takes_long_is_allowed_a_shift_below_the_first() -> None:
+    """Where a barrier is a million times as stiff as the tissue, the first shift stops all motion."""
+    saddle, shared, u = Saddle(-1e-9), system(), np.zeros((1, 2))
+    hessian = DefiniteHessian(TotalEnergy([saddle]), shared, lambda _: NONE, np.ones(2))
+    taus = []
+    for _ in range(30):
+        hessian.factor(u)
+        taus.append(hessian.tau)
+    assert taus[:PATIENCE] == pytest.approx([1e-5] * PATIENCE)
+    assert taus[PATIENCE : PATIENCE + 3] == pytest.approx([1e-5 / 4.0**k for k in (1, 2, 3)])
+    assert 1e-9 < taus[-1] <= 4e-9
 
 
 def tangent(stiffness: np.ndarray, mass: np.ndarray) -> Tangent:

@@ -9,12 +9,16 @@ from typing import Final
 from gyrify.energy.term import Evaluation
 from gyrify.energy.total import TotalEnergy
 from gyrify.solve.linear import Factor
-from gyrify.solve.shift import shifted_factor
+from gyrify.solve.shift import FIRST_SHIFT, shifted_factor
 from gyrify.solve.system import System
 from gyrify.solve.types import FloatArray, IntArray
 
 # Ratio of the shifts that are tried; the first is smaller than the last step's by the same.
 _GROWTH: Final = 4.0
+# Shifted steps of one minimisation after which the shift may fall further. Where a barrier is stiff on fine
+# cells, the first shift is far above the negative curvature of the tissue, and would stop all motion.
+PATIENCE: Final = 16
+_LATER: Final = 1e-12
 
 
 @dataclass
@@ -36,6 +40,8 @@ class DefiniteHessian:
         Lumped area [mm^2], to shift by a multiple of; None to project every cell.
     tau : float
         The last shift that was needed [Pa/mm^2].
+    n_shifted : int
+        Steps that needed one.
     """
 
     total: TotalEnergy
@@ -43,6 +49,7 @@ class DefiniteHessian:
     candidates: Callable[[FloatArray], IntArray]
     mass: FloatArray | None
     tau: float = 0.0
+    n_shifted: int = 0
 
     def factor(self, u: FloatArray) -> Factor:
         """Factor at a state.
@@ -65,8 +72,9 @@ class DefiniteHessian:
             data = self._assembled(barriers_projected, u)
             factor = self.system.factorise_definite(data) if self.tau == 0.0 else None
         if factor is None:
-            least = self.tau / _GROWTH
-            factor, self.tau = shifted_factor(self.system, data, self.mass, least, _GROWTH)
+            least, first = self.tau / _GROWTH, FIRST_SHIFT if self.n_shifted < PATIENCE else _LATER
+            factor, self.tau = shifted_factor(self.system, data, self.mass, least, _GROWTH, first)
+            self.n_shifted += 1
         return factor
 
     def _assembled(self, evaluations: Sequence[Evaluation], u: FloatArray) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -11,9 +11,9 @@ from gyrify.solve.linear import Factor
 from gyrify.solve.system import System
 from gyrify.solve.types import FloatArray
 
-# First shift over the largest diagonal entry of M^-1 K, whatever its sign, and how often it may be raised.
-_FIRST_SHIFT = 1e-5
-_RAISES = 60
+# First shift over the largest diagonal entry of M^-1 K, and how often it may be raised.
+FIRST_SHIFT: Final = 1e-5
+_RAISES: Final = 60
 
 
 class Shifted(NamedTuple):
@@ -32,7 +32,12 @@ class Shifted(NamedTuple):
 
 
 def shifted_factor(
-    system: System, data: FloatArray, mass: FloatArray, least: float = 0.0, growth: float = 2.0
+    system: System,
+    data: FloatArray,
+    mass: FloatArray,
+    least: float = 0.0,
+    growth: float = 2.0,
+    first: float = FIRST_SHIFT,
 ) -> Shifted:
     """Factor of K + tau M with the first tau of a geometric sequence that leaves no negative pivot.
 
@@ -48,6 +53,8 @@ def shifted_factor(
         Smallest tau to try [Pa/mm^2].
     growth : float
         Ratio of the sequence [-].
+    first : float
+        Smallest tau to try over the largest diagonal entry of M^-1 K, whatever its sign [-].
 
     Returns
     -------
@@ -59,7 +66,7 @@ def shifted_factor(
         If no shift is enough.
     """
     diagonal = system.pattern.indptr[:-1]
-    tau = max(least, _FIRST_SHIFT * float(np.abs(data[diagonal] / mass).max()))
+    tau = max(least, first * float(np.abs(data[diagonal] / mass).max()))
     for _ in range(_RAISES):
         shifted = data.copy()
         shifted[diagonal] += tau * mass
