@@ -23,7 +23,7 @@ SOURCES = ROOT / "src"
 COMPILED = [
     ".".join(file.relative_to(SOURCES).with_suffix("").parts)
     for name in ("energy", "physics")
-    for file in (SOURCES / "gyrify" / name).glob("[!_]*.py")
+    for file in (SOURCES / "gyrify" / name).rglob("[!_]*.py")
 ]
 
 with atheris.instrument_imports(include=["gyrify"], exclude=COMPILED):

@@ -28,3 +28,11 @@ def test_mutant_applies_and_names_tests(mutant) -> None:
 def test_mutants_are_many_and_have_names() -> None:
     names = [mutant.name for mutant in mutants.MUTANTS]
     assert len(set(names)) == len(names) >= 14
+
+
+def test_what_numba_compiles_is_told_from_the_source() -> None:
+    """A list by hand would go out of date, and a mutant would meet the cache of the unbroken code."""
+    sources = mutants.ROOT / "src" / "gyrify"
+    found = {str(f.relative_to(sources)) for f in sources.rglob("*.py") if mutants.is_compiled(f.read_text())}
+    assert {"energy/batch.py", "physics/stress.py", "physics/materials/neo_hookean.py"} <= found
+    assert "solve/newton.py" not in found
