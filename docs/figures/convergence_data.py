@@ -23,7 +23,7 @@ COARSEST = {"linear": (108, 9, 3), "mean_dilatation": (108, 9, 3), "quadratic": 
 # Meshes of quadratic triangles between and beyond these levels.
 BETWEEN = ((72, 7, 3), (144, 13, 5), (288, 27, 11))
 DRAG = (1.3, 0.13)
-# Drag for which the index has a limit on meshes that can be run: the preset converged-slice.
+# Twice the drag of the reference slice, to see whether more of it brings a limit nearer.
 STRONG = 2.6
 SEEDS = (1, 2, 3, 4)
 # Runs whose shape is drawn.
@@ -89,6 +89,9 @@ def singles() -> dict[str, dict[str, object]]:
         name = f"quadratic {size[0]} × {size[1]}"
         found[name] = meshed(size, "quadratic")
         found[f"{name} drag={STRONG}"] = meshed(size, "quadratic", **{"dissipation.number": STRONG})
+        found[f"{name} branch followed"] = meshed(
+            size, "quadratic", **perfect, **{"stability.follow_branch": True}
+        )
         if size[0] < 288:
             found[f"{name} drag=0.13"] = meshed(size, "quadratic", **{"dissipation.number": 0.13})
     return found

@@ -49,15 +49,17 @@ def sequence(element: str, number: float) -> list[dict[str, Any]]:
         for name, run in RUNS.items()
         if name.startswith(element)
         and "×" in name
+        and "followed" not in name
         and run["overrides"].get("dissipation.number", 1.3) == number
     ]
     runs = family(element, number) + between
     return sorted(runs, key=lambda run: -run["distance_mm"])
 
 
-def followed() -> list[dict[str, Any]]:
-    """Runs without drag that follow the branch, on three meshes."""
-    return [RUNS[f"quadratic {level} branch followed"] for level in (0, 1, 2)]
+def followed(*, others: bool = False) -> list[dict[str, Any]]:
+    """Runs without drag that follow the branch, on three meshes or on the three other ones."""
+    meshes = ("72 × 7", "144 × 13", "288 × 27") if others else (0, 1, 2)
+    return [RUNS[f"quadratic {mesh} branch followed"] for mesh in meshes]
 
 
 def ensemble(element: str, level: int, number: float, key: str) -> list[float]:
@@ -229,9 +231,18 @@ def tables() -> None:
             print("\n".join(verdicts(runs, [f"{run['contour_nodes']} nodes" for run in runs])))
     print("\nNo drag, branch followed\n")
     print("\n".join(verdicts(followed(), [f"{run['contour_nodes']} nodes" for run in followed()])))
-    print("\nOther meshes, drag number 1.3\n")
-    others = [f"quadratic {mesh}" for mesh in ("72 × 7", "144 × 13", "288 × 27")]
-    print("\n".join(verdicts([RUNS[name] for name in others], others)))
+    print("\nNo drag, branch followed, other meshes\n")
+    print(
+        "\n".join(
+            verdicts(
+                followed(others=True), [f"{run['contour_nodes']} nodes" for run in followed(others=True)]
+            )
+        )
+    )
+    for title, end in (("1.3", ""), ("2.6", " drag=2.6")):
+        print(f"\nOther meshes, drag number {title}\n")
+        others = [f"quadratic {mesh}{end}" for mesh in ("72 × 7", "144 × 13", "288 × 27")]
+        print("\n".join(verdicts([RUNS[name] for name in others], others)))
     print("\nSeeds\n")
     print("\n".join(ensembles()))
     for title, names in (

@@ -20,12 +20,15 @@ FAMILIES = (
     ("quadratic 72 × 7", "quadratic 144 × 13", "quadratic 288 × 27"),
     ("quadratic 0 drag=1.3 seed=0", "quadratic 1 drag=1.3 seed=0", "quadratic 2 drag=1.3 seed=0"),
     ("quadratic 0 branch followed", "quadratic 1 branch followed", "quadratic 2 branch followed"),
-    ("quadratic 72 × 7 drag=2.6", "quadratic 144 × 13 drag=2.6", "quadratic 288 × 27 drag=2.6"),
-    ("quadratic 0 drag=2.6 seed=0", "quadratic 1 drag=2.6 seed=0", "quadratic 2 drag=2.6 seed=0"),
+    (
+        "quadratic 72 × 7 branch followed",
+        "quadratic 144 × 13 branch followed",
+        "quadratic 288 × 27 branch followed",
+    ),
 )
 
 
-@pytest.mark.parametrize(("family", "number"), [*zip(FAMILIES, (0, 0, 1, 2, 2), strict=True)])
+@pytest.mark.parametrize(("family", "number"), [*zip(FAMILIES, (0, 0, 1, 1), strict=True)])
 def test_the_limits_are_those_that_were_measured(family: tuple[str, ...], number: int) -> None:
     runs = json.loads(MEASURED.read_text(encoding="utf-8"))["runs"]
     found = [runs[name]["gi_closing"] for name in family]
@@ -76,7 +79,7 @@ def test_of_other_tissue_nothing_is_known(change: dict[str, object]) -> None:
 
 def test_the_followed_branch_has_a_limit_of_its_own() -> None:
     followed = case({"dissipation.kind": "none", "stability.follow_branch": True})
-    assert limit_of(followed).gi_closing == 1.59
+    assert limit_of(followed).gi_closing == 1.61
 
 
 @pytest.mark.parametrize("refine", range(5))

@@ -37,8 +37,7 @@ class Limit:
 
 LIMITS: Final = (
     Limit({"kind": "drag", "number": 1.3, "course": "constant"}, False, 1.74, 0.03),
-    Limit({"kind": "none"}, True, 1.59, 0.02),
-    Limit({"kind": "drag", "number": 2.6, "course": "constant"}, False, 1.76, 0.02),
+    Limit({"kind": "none"}, True, 1.61, 0.02),
 )
 
 
