@@ -1,7 +1,7 @@
 /* A disk without locks or shared memory, for files below a folder: preloaded into the process that is tested.
 
 POOR_DISK names the folder; POOR_DISK_LACKS what does not work there: "records" (POSIX locks), "files" (flock),
-"maps" (shared mappings), in any order.
+"maps" (shared mappings), "speed" (every write waits for 3 ms), in any order.
 */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -66,3 +66,12 @@ int flock(int fd, int operation) {
     }
 MMAP(mmap)
 MMAP(mmap64)
+
+#define PWRITE(name, offset)                                                       \
+    ssize_t name(int fd, const void *from, size_t size, offset at) {               \
+        if (lacks(fd, "speed")) usleep(3000);                                     \
+        ssize_t (*next)(int, const void *, size_t, offset) = dlsym(RTLD_NEXT, #name); \
+        return next(fd, from, size, at);                                           \
+    }
+PWRITE(pwrite, off_t)
+PWRITE(pwrite64, off64_t)
