@@ -154,6 +154,7 @@ def _is_between(q: np.ndarray, e: np.ndarray) -> bool:
 @settings(max_examples=300, deadline=None)
 @given(st.lists(OFFSETS, min_size=12, max_size=12))
 @example([-0.5, 0.0, 0.0, -0.5, -1.0, -0.5, 0.0, 0.875, 0.0, 0.0, 0.0, 0.0])
+@example([0.0, 0.0, 1.1754943508222875e-38, 0.0, 1.0, 0.0, 0.0, -0.25, 0.0, -1.0, 0.0, 0.0])
 def test_no_step_reaches_the_first_meeting(numbers: list[float]) -> None:
     start, end = np.array(numbers).reshape(2, 3, 2)
     edges, pairs = np.array([[1, 2]]), np.array([[0, 0]])

@@ -16,6 +16,8 @@ from gyrify.base.compiled import njit
 ADVANCE = 0.9
 # Advances along one path; a pair that needs more is taken to meet where they end.
 MOST_ADVANCES = 100_000
+# Distance, over the size of coordinates and path, that rounding leaves uncertain.
+ROUNDING = 1e-15
 
 
 @njit(cache=True, error_model="numpy")
@@ -180,9 +182,12 @@ def pair_step(start, end, p, a, b, gap, longest):
     speed = np.hypot(upx, upy) + max(np.hypot(uax, uay), np.hypot(ubx, uby))
     px, py, ax, ay, bx, by = start[p, 0], start[p, 1], start[a, 0], start[a, 1], start[b, 0], start[b, 1]
     distance = np.sqrt(nearest(px, py, ax, ay, bx, by)[0])
-    if not distance > 0.0 or not np.isfinite(speed):
+    size = max(abs(px), abs(py), abs(ax), abs(ay), abs(bx), abs(by)) + speed + abs(mx) + abs(my)
+    # nearer than rounding, no distance is known
+    nearest_allowed = max(gap * distance, ROUNDING * size)
+    if not distance > nearest_allowed or not np.isfinite(speed):
         return 0.0
-    t, nearest_allowed = 0.0, gap * distance
+    t = 0.0
     for _ in range(MOST_ADVANCES):
         if speed * (longest - t) < ADVANCE * (distance - nearest_allowed):
             return longest
