@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-import gyrify.theory.annulus as annulus_module
 import gyrify.theory.margin as margin_module
 import gyrify.theory.onset as onset
+import gyrify.theory.radial as radial_module
 from gyrify.errors import ConfigError, SolveError
 from gyrify.theory import Annulus, SecondVariation, asymptotic_wrinkle, base_state, critical_growth_ratio
 from gyrify.theory.margin import Margin, coarse_modes, stability_margin
@@ -146,7 +146,7 @@ def test_a_radial_state_is_in_balance_to_round_off() -> None:
 def test_a_radial_state_at_the_iteration_cap_is_refused(
     monkeypatch: pytest.MonkeyPatch, iterations: int
 ) -> None:
-    monkeypatch.setattr(annulus_module, "_MAX_NEWTON", iterations)
+    monkeypatch.setattr(radial_module, "_MAX_NEWTON", iterations)
     with pytest.raises(SolveError, match="radial state is lost"):
         base_state(STANDARD)
 

@@ -14,8 +14,7 @@ from scipy.optimize import brentq
 from gyrify.config import Config
 from gyrify.errors import ConfigError, SolveError
 from gyrify.report.plot.dispersion import annulus_of
-from gyrify.theory.annulus import BaseState
-from gyrify.theory.margin import stability_margin
+from gyrify.theory.margin import SmoothState, stability_margin
 from gyrify.theory.onset import Parameter, state_at
 
 FloatArray = NDArray[np.float64]
@@ -120,7 +119,7 @@ def _without_curve(outcomes: list[str], n_sections: int) -> str:
 
 def _section(config: Config, other: tuple[str, float], key: str, span: Span) -> _Section:
     """Values of the scanned parameter at which stability changes; none where theory finds no base state."""
-    guess: BaseState | None = None
+    guess: SmoothState | None = None
 
     def margin(value: float) -> float:
         nonlocal guess

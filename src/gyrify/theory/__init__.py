@@ -19,6 +19,8 @@ from gyrify.theory.onset import (
     crossings,
     stability_map,
 )
+from gyrify.theory.sphere import Sphere, SphereState, sphere_state
+from gyrify.theory.spherical_modes import SphericalVariation
 
 __all__ = [
     "INCOMPRESSIBLE",
@@ -30,6 +32,9 @@ __all__ = [
     "Margin",
     "Mode",
     "SecondVariation",
+    "Sphere",
+    "SphereState",
+    "SphericalVariation",
     "Wrinkle",
     "asymptotic_wrinkle",
     "base_state",
@@ -40,6 +45,7 @@ __all__ = [
     "crossings",
     "lowest_eigenvalue",
     "neutral_curve",
+    "sphere_state",
     "stability_map",
     "stability_margin",
     "surface_limit",

@@ -12,18 +12,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gyrify.errors import ConfigError, SolveError
 from gyrify.theory.annulus_parameters import Annulus
 from gyrify.theory.moduli import Response
+from gyrify.theory.radial import RadialProblem
 from gyrify.theory.spectral import Line
 
 __all__ = ["Annulus", "BaseState", "base_state"]
 
 FloatArray = NDArray[np.float64]
-
-# Largest growth strain of the cortex between two solves.
-_LARGEST_STEP = 0.15
-_MAX_NEWTON = 50
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,49 +75,17 @@ class BaseState:
         return float(2.0 * np.pi * (line.weights * line.points) @ self.response(line.points).energy)
 
 
-@dataclass(frozen=True, eq=False)
-class _RadialProblem:
-    """The discrete energy of r - R and F_33 - 1; stretches less one are linear in the unknowns."""
-
-    annulus: Annulus
-    line: Line
-    # (n_points, 3, n_free): stretches at the points per unknown
-    strain: FloatArray
-    free: NDArray[np.bool_]
-
-    @classmethod
-    def build(cls, annulus: Annulus) -> _RadialProblem:
-        line = annulus.line()
-        strain = np.zeros((len(line.points), 3, len(line.nodes) + 1))
-        strain[:, 0, :-1] = line.slopes
-        strain[:, 1, :-1] = line.values / line.points[:, None]
-        strain[:, 2, -1] = 1.0
-        free = np.ones(len(line.nodes) + 1, dtype=np.bool_)
-        free[0] = False
-        free[-1] = annulus.out_of_plane == "generalised"
-        return cls(annulus, line, strain[:, :, free], free)
-
-    def solve(self, unknowns: FloatArray, growth_time: float) -> tuple[FloatArray, float]:
-        """Newton's method; raises FloatingPointError where it does not converge."""
-        area = self.line.weights * self.line.points
-        scale = self.annulus.young_modulus * self.annulus.outer_radius
-        smallest = np.inf
-        for _ in range(_MAX_NEWTON):
-            stretch = 1.0 + self.strain @ unknowns[self.free]
-            if np.any(stretch <= 0.0):
-                raise FloatingPointError
-            response = self.annulus.response(self.line.points, stretch, growth_time)
-            force = np.einsum("q,qi,qia->a", area, response.stress, self.strain)
-            size = float(np.max(np.abs(force)) / scale)
-            # Stop where round-off takes over, not at a guessed tolerance.
-            if size < 1e-8 and size >= 0.5 * smallest:
-                return unknowns, size
-            smallest = min(size, smallest)
-            weighted = (area[:, None, None] * response.moduli) @ self.strain
-            tangent = np.tensordot(self.strain, weighted, axes=([0, 1], [0, 1]))
-            unknowns = unknowns.copy()
-            unknowns[self.free] -= np.linalg.solve(tangent, force)
-        raise FloatingPointError
+def _problem(annulus: Annulus) -> RadialProblem:
+    """Energy of r - R and F_33 - 1."""
+    line = annulus.line()
+    strain = np.zeros((len(line.points), 3, len(line.nodes) + 1))
+    strain[:, 0, :-1] = line.slopes
+    strain[:, 1, :-1] = line.values / line.points[:, None]
+    strain[:, 2, -1] = 1.0
+    free = np.ones(len(line.nodes) + 1, dtype=np.bool_)
+    free[0] = False
+    free[-1] = annulus.out_of_plane == "generalised"
+    return RadialProblem(annulus, line, line.weights * line.points, strain[:, :, free], free)
 
 
 def base_state(
@@ -153,36 +117,8 @@ def base_state(
         If no equilibrium is found.
     """
     time = annulus.duration if growth_time is None else float(growth_time)
-    if not 0.0 <= time < np.inf:
-        raise ConfigError(f"The growth time is {time}.", "It must be finite and not negative.")
-    problem = _RadialProblem.build(annulus)
+    problem, start = _problem(annulus), None
     if guess is not None and np.array_equal(guess.line.nodes, problem.line.nodes):
-        try:
-            start = np.append(guess.displacement, guess.axial_stretch - 1.0)
-            return _state(problem, time, *problem.solve(start, time))
-        except (FloatingPointError, np.linalg.LinAlgError):
-            pass  # too far away: step from the start instead
-    return _stepped(problem, time)
-
-
-def _state(problem: _RadialProblem, time: float, unknowns: FloatArray, residual: float) -> BaseState:
-    return BaseState(problem.annulus, time, problem.line, unknowns[:-1], 1.0 + float(unknowns[-1]), residual)
-
-
-def _stepped(problem: _RadialProblem, time: float) -> BaseState:
-    """Follow the state from no growth, halving the step where Newton's method fails."""
-    unknowns, residual, done = np.zeros(len(problem.free)), 0.0, 0.0
-    step = min(1.0, _LARGEST_STEP / max(problem.annulus.growth_rate * time, 1e-12))
-    while done < 1.0:
-        target = min(1.0, done + step)
-        try:
-            unknowns, residual = problem.solve(unknowns, target * time)
-            done = target
-        except (FloatingPointError, np.linalg.LinAlgError):
-            step *= 0.5
-            if step < 1e-6:
-                raise SolveError(
-                    f"The radial state is lost at growth time {done * time:.6g}.",
-                    "Try less growth, or a larger hole.",
-                ) from None
-    return _state(problem, time, unknowns, residual)
+        start = np.append(guess.displacement, guess.axial_stretch - 1.0)
+    unknowns, residual = problem.solve(time, start)
+    return BaseState(annulus, time, problem.line, unknowns[:-1], 1.0 + float(unknowns[-1]), residual)

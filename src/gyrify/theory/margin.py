@@ -1,4 +1,4 @@
-"""The weakest mode of one axisymmetric state, over all mode numbers and the limit of short waves."""
+"""The weakest mode of one smooth state, over all mode numbers and the limit of short waves."""
 
 from __future__ import annotations
 
@@ -10,8 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from gyrify.theory.annulus import Annulus, BaseState
 from gyrify.theory.mode_numbers import SecondVariation, surface_limit
+from gyrify.theory.sphere import Sphere, SphereState
+from gyrify.theory.spherical_modes import SphericalVariation
 
 FloatArray = NDArray[np.float64]
+SmoothState = BaseState | SphereState
 
 _MODE_SPACING = 1.4
 # Beyond this many waves per 2 pi thicknesses a wave sees a half-space, which the surface limit covers; where
@@ -29,7 +32,7 @@ class Margin:
     value : float
         Its stability margin [-]; negative where the state is unstable.
     mode_number : int or None
-        Its number; None for the surface limit.
+        Its number, of a sphere its degree; None for the surface limit.
     at_edge : bool
         Whether it is the last number that was tried, so that a shorter wave may be weaker still.
     """
@@ -39,44 +42,50 @@ class Margin:
     at_edge: bool = False
 
 
-def scaled(annulus: Annulus, eigenvalue: ArrayLike, mode_number: ArrayLike) -> FloatArray:
+def scaled(body: Annulus | Sphere, eigenvalue: ArrayLike, mode_number: ArrayLike) -> FloatArray:
     """Eigenvalue [Pa/mm^2] over the shear stiffness of a wave as long, mu (n / outer radius)^2 [-]."""
-    wave_number = np.maximum(mode_number, 1) / annulus.outer_radius
-    return np.asarray(eigenvalue, dtype=np.float64) / (annulus.moduli_grey[0] * wave_number**2)
+    wave_number = np.maximum(mode_number, 1) / body.outer_radius
+    return np.asarray(eigenvalue, dtype=np.float64) / (body.moduli_grey[0] * wave_number**2)
 
 
-def coarse_modes(annulus: Annulus) -> list[int]:
+def coarse_modes(body: Annulus | Sphere) -> list[int]:
     """Mode numbers to scan: all up to 5, then in geometric steps until waves are shorter than the cortex."""
-    last = int(np.ceil(_SHORTEST * annulus.outer_radius / annulus.cortical_thickness))
+    last = int(np.ceil(_SHORTEST * body.outer_radius / body.cortical_thickness))
     modes = [0, 1, 2]
     while modes[-1] < last:
         modes.append(min(last, max(modes[-1] + 1, round(modes[-1] * _MODE_SPACING))))
     return modes
 
 
-def stability_margin(state: BaseState) -> Margin:
+def variation_of(state: SmoothState) -> SecondVariation | SphericalVariation:
+    """The second variation about a smooth state."""
+    return SphericalVariation.of(state) if isinstance(state, SphereState) else SecondVariation.of(state)
+
+
+def stability_margin(state: SmoothState) -> Margin:
     """Weakest mode of a state, over all mode numbers and the surface limit.
 
     Parameters
     ----------
-    state : BaseState
-        The axisymmetric state.
+    state : BaseState or SphereState
+        The smooth state.
 
     Returns
     -------
     Margin
         Negative where the state is unstable.
     """
-    annulus, variation = state.annulus, SecondVariation.of(state)
+    body = state.sphere if isinstance(state, SphereState) else state.annulus
+    variation = variation_of(state)
     known: dict[int, float] = {}
 
     def margin(number: int) -> float:
         if number not in known:
-            known[number] = float(scaled(annulus, variation.lowest(number), number))
+            known[number] = float(scaled(body, variation.lowest(number), number))
         return known[number]
 
-    modes = coarse_modes(annulus)
-    end = int(np.ceil(_SHORTEST_RESOLVED * annulus.outer_radius / annulus.cortical_thickness))
+    modes = coarse_modes(body)
+    end = int(np.ceil(_SHORTEST_RESOLVED * body.outer_radius / body.cortical_thickness))
     while min(modes, key=margin) == modes[-1] < end:
         modes.append(min(end, round(modes[-1] * _MODE_SPACING)))
     for valley in _valleys(modes, margin):

@@ -18,6 +18,7 @@ from scipy.linalg import eigh, solve_triangular
 
 from gyrify.errors import ConfigError
 from gyrify.theory.annulus import Annulus, BaseState, base_state
+from gyrify.theory.sphere import SphereState
 from gyrify.theory.wave import half_space_stiffness, lowest_stiffness, state_matrix
 
 FloatArray = NDArray[np.float64]
@@ -92,7 +93,7 @@ class SecondVariation:
         axial = None
         if state.annulus.out_of_plane == "generalised":
             axial = _axial_coupling(response.moduli, slopes, hoop, area)
-        return cls(state, _quadratic_forms(fixed, turning, tangent), root, axial)
+        return cls(state, quadratic_forms(fixed, turning, tangent), root, axial)
 
     def matrix(self, number: int) -> FloatArray:
         """Whitened second variation [Pa/mm^2] of mode `number`, radial unknowns first.
@@ -119,7 +120,7 @@ class SecondVariation:
         return Mode(number, float(value[0]), self.state.line.nodes, radial, circumferential)
 
 
-def _quadratic_forms(fixed: FloatArray, turning: FloatArray, tangent: FloatArray) -> FloatArray:
+def quadratic_forms(fixed: FloatArray, turning: FloatArray, tangent: FloatArray) -> FloatArray:
     """K_0, K_1, K_2 of gradients `fixed` + n `turning`, each (4, n_points, n_unknowns)."""
     stress_fixed = np.einsum("ijq,jqa->iqa", tangent, fixed)
     stress_turning = np.einsum("ijq,jqa->iqa", tangent, turning)
@@ -144,24 +145,25 @@ def _axial_coupling(moduli: FloatArray, slopes: FloatArray, hoop: FloatArray, ar
     return np.asarray((force[0] @ slopes + force[1] @ hoop) / np.sqrt(stiffness))
 
 
-def surface_limit(state: BaseState) -> float:
-    """Stiffness of the free contour against waves much shorter than the cortex is thick.
+def surface_limit(state: BaseState | SphereState) -> float:
+    """Stiffness of the free surface against waves much shorter than the cortex is thick.
 
-    Such a wave sees a half-space in the stretch of the contour; where this vanishes is Biot's instability.
+    Such a wave sees a half-space in the stretch of the surface; where this vanishes is Biot's instability.
 
     Parameters
     ----------
-    state : BaseState
-        The axisymmetric state.
+    state : BaseState or SphereState
+        The smooth state.
 
     Returns
     -------
     float
         Lowest eigenvalue of the surface stiffness / shear modulus of the cortex [-]; negative means unstable.
     """
-    tangent = state.response(state.annulus.outer_radius).in_plane[0]
+    body = state.sphere if isinstance(state, SphereState) else state.annulus
+    tangent = state.response(body.outer_radius).in_plane[0]
     stiffness = half_space_stiffness(state_matrix(tangent))
-    return float(lowest_stiffness(stiffness)) / state.annulus.moduli_grey[0]
+    return float(lowest_stiffness(stiffness)) / body.moduli_grey[0]
 
 
 def lowest_eigenvalue(annulus: Annulus, growth_time: float, mode_number: int) -> float:

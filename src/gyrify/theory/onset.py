@@ -1,4 +1,4 @@
-"""Where the growing annulus loses stability: every crossing of a scanned parameter."""
+"""Where a growing annulus or sphere loses stability: every crossing of a scanned parameter."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from scipy.optimize import brentq
 
 from gyrify.errors import ConfigError
 from gyrify.theory.annulus import Annulus, BaseState, base_state
-from gyrify.theory.margin import scaled, stability_margin
-from gyrify.theory.mode_numbers import SecondVariation
+from gyrify.theory.margin import SmoothState, scaled, stability_margin, variation_of
+from gyrify.theory.sphere import Sphere, SphereState, sphere_state
 
 FloatArray = NDArray[np.float64]
 Parameter = Literal["growth_ratio", "growth_time", "stiffness_ratio", "cortical_thickness"]
@@ -24,7 +24,7 @@ _NEAR = 1e-3
 
 @dataclass(frozen=True)
 class Crossing:
-    """One value of a parameter at which the annulus gains or loses stability.
+    """One value of a parameter at which a body gains or loses stability.
 
     Attributes
     ----------
@@ -33,13 +33,14 @@ class Crossing:
     value : float
         Its value there, in its own unit.
     mode_number : int or None
-        n of the mode that crosses; None for the surface limit.
+        n of the mode that crosses, of a sphere its degree l; None for the surface limit.
     wavelength : float
-        Length of one wave on the deformed contour [mm]; 0 for the surface limit, infinite for mode 0.
+        Length of one wave on the deformed surface [mm], of a sphere 2 pi r / sqrt(l (l + 1)); 0 for the
+        surface limit, infinite for mode 0.
     growth_time : float
         t [time].
     becomes : {"unstable", "stable"}
-        What the annulus becomes as the parameter rises.
+        What the body becomes as the parameter rises.
     at_edge : bool
         Whether the mode is the last that was tried, so that a shorter wave may come first.
     """
@@ -73,17 +74,23 @@ class Crossings(tuple[Crossing, ...]):
 
 
 def state_at(
-    annulus: Annulus, parameter: Parameter, value: float, growth_time: float, guess: BaseState | None
-) -> BaseState:
-    """Axisymmetric state with one parameter set; `growth_time` is used unless it is that parameter."""
-    if parameter == "growth_time":
-        return base_state(annulus, value, guess)
-    changes: dict[str, float] = {parameter: value}
-    return base_state(replace(annulus, **changes), growth_time, guess)  # type: ignore[arg-type]
+    body: Annulus | Sphere,
+    parameter: Parameter,
+    value: float,
+    growth_time: float,
+    guess: SmoothState | None,
+) -> SmoothState:
+    """Smooth state with one parameter set; `growth_time` is used unless it is that parameter."""
+    time = value if parameter == "growth_time" else growth_time
+    changes: dict[str, float] = {} if parameter == "growth_time" else {parameter: value}
+    changed = replace(body, **changes)  # type: ignore[arg-type]
+    if isinstance(changed, Sphere):
+        return sphere_state(changed, time, guess if isinstance(guess, SphereState) else None)
+    return base_state(changed, time, guess if isinstance(guess, BaseState) else None)
 
 
 def crossings(
-    annulus: Annulus, parameter: Parameter, values: Sequence[float], growth_time: float | None = None
+    annulus: Annulus | Sphere, parameter: Parameter, values: Sequence[float], growth_time: float | None = None
 ) -> Crossings:
     """Every change of stability along a scanned parameter.
 
@@ -91,14 +98,14 @@ def crossings(
 
     Parameters
     ----------
-    annulus : Annulus
-        The other parameters.
+    annulus : Annulus or Sphere
+        The body, with the other parameters.
     parameter : {"growth_ratio", "growth_time", "stiffness_ratio", "cortical_thickness"}
         What is varied.
     values : sequence of float
         The values scanned, increasing; two crossings between neighbours are not seen.
     growth_time : float, optional
-        t [time] where it is not itself varied; the annulus' duration by default.
+        t [time] where it is not itself varied; the body's duration by default.
 
     Returns
     -------
@@ -111,12 +118,12 @@ def crossings(
     ConfigError
         If the values are not increasing, or one is out of bounds.
     SolveError
-        If an axisymmetric state is not found.
+        If a smooth state is not found.
     """
     if len(values) < 2 or np.any(np.diff(values) <= 0.0):
         raise ConfigError("The scanned values do not increase.", "Give two values or more, in order.")
     time = annulus.duration if growth_time is None else growth_time
-    guess: BaseState | None = None
+    guess: SmoothState | None = None
 
     def margin(value: float) -> float:
         nonlocal guess
@@ -140,7 +147,7 @@ def _notes(
     name, low, high = parameter.replace("_", " "), float(values[0]), float(values[-1])
     if margins[0] < 0.0:
         yield (
-            f"The annulus is unstable already at the lowest {name} scanned ({low:.6g}): a crossing may lie "
+            f"The body is unstable already at the lowest {name} scanned ({low:.6g}): a crossing may lie "
             "below it. Scan from a smaller value."
         )
     for end, value in ((margins[0], low), (margins[-1], high)):
@@ -157,14 +164,17 @@ def _notes(
             )
 
 
-def _crossing(parameter: Parameter, value: float, state: BaseState, was_unstable: bool) -> Crossing:
+def _crossing(parameter: Parameter, value: float, state: SmoothState, was_unstable: bool) -> Crossing:
     weakest = stability_margin(state)
-    number, length = weakest.mode_number, 2.0 * np.pi * float(state.radius(state.annulus.outer_radius))
+    number, is_sphere = weakest.mode_number, isinstance(state, SphereState)
+    body = state.sphere if isinstance(state, SphereState) else state.annulus
+    length = 2.0 * np.pi * float(state.radius(body.outer_radius))
+    waves = number if number is None or not is_sphere else np.sqrt(number * (number + 1.0))
     return Crossing(
         parameter,
         value,
         number,
-        0.0 if number is None else length / number if number else np.inf,
+        0.0 if waves is None else length / float(waves) if waves else np.inf,
         state.growth_time,
         "stable" if was_unstable else "unstable",
         weakest.at_edge,
@@ -172,18 +182,18 @@ def _crossing(parameter: Parameter, value: float, state: BaseState, was_unstable
 
 
 def critical_growth_ratio(
-    annulus: Annulus, values: Sequence[float] | None = None, growth_time: float | None = None
+    annulus: Annulus | Sphere, values: Sequence[float] | None = None, growth_time: float | None = None
 ) -> Crossings:
-    """Growth ratios at which the annulus changes stability (see `crossings`).
+    """Growth ratios at which the body changes stability (see `crossings`).
 
     Parameters
     ----------
-    annulus : Annulus
-        The other parameters.
+    annulus : Annulus or Sphere
+        The body, with the other parameters.
     values : sequence of float, optional
         Growth ratios scanned [-]; 1 to 10 in 24 geometric steps by default.
     growth_time : float, optional
-        t [time]; the annulus' duration by default.
+        t [time]; the body's duration by default.
 
     Returns
     -------
@@ -198,13 +208,13 @@ def critical_growth_ratio(
     )
 
 
-def critical_growth_time(annulus: Annulus, values: Sequence[float] | None = None) -> Crossings:
-    """Growth times at which the annulus changes stability (see `crossings`).
+def critical_growth_time(annulus: Annulus | Sphere, values: Sequence[float] | None = None) -> Crossings:
+    """Growth times at which the body changes stability (see `crossings`).
 
     Parameters
     ----------
-    annulus : Annulus
-        The parameters.
+    annulus : Annulus or Sphere
+        The body.
     values : sequence of float, optional
         Growth times scanned [time]; 25 equal steps of the duration by default.
 
@@ -219,7 +229,7 @@ def critical_growth_time(annulus: Annulus, values: Sequence[float] | None = None
 
 
 def stability_map(
-    annulus: Annulus,
+    annulus: Annulus | Sphere,
     parameter: Parameter,
     values: Sequence[float],
     mode_numbers: Sequence[int],
@@ -229,8 +239,8 @@ def stability_map(
 
     Parameters
     ----------
-    annulus : Annulus
-        The other parameters.
+    annulus : Annulus or Sphere
+        The body, with the other parameters.
     parameter : {"growth_ratio", "growth_time", "stiffness_ratio", "cortical_thickness"}
         What is varied.
     values : (n_values,) sequence of float
@@ -238,7 +248,7 @@ def stability_map(
     mode_numbers : (n_modes,) sequence of int
         Mode numbers n [-].
     growth_time : float, optional
-        t [time] where it is not itself varied; the annulus' duration by default.
+        t [time] where it is not itself varied; the body's duration by default.
 
     Returns
     -------
@@ -246,9 +256,10 @@ def stability_map(
         Lowest eigenvalue / mu (n / outer radius)^2 [-]; negative means unstable.
     """
     time = annulus.duration if growth_time is None else growth_time
-    rows, guess = [], None
+    rows: list[FloatArray] = []
+    guess: SmoothState | None = None
     for value in values:
         guess = state_at(annulus, parameter, value, time, guess)
-        variation = SecondVariation.of(guess)
+        variation = variation_of(guess)
         rows.append(scaled(annulus, [variation.lowest(number) for number in mode_numbers], mode_numbers))
     return np.array(rows)
