@@ -168,6 +168,15 @@ def test_onset_is_where_one_degree_becomes_soft_and_no_other_is(sphere: Sphere) 
 
 
 @pytest.mark.parametrize(
+    ("ratio", "law", "time", "degree"),
+    [(1.0, "isotropic", 295.63, 18), (1.0, "tangential", 272.55, 29), (10.0, "tangential", 66.71, 15)],
+)
+def test_onset_of_the_documented_spheres(ratio: float, law: str, time: float, degree: int) -> None:
+    (crossing,) = critical_growth_time(Sphere(stiffness_ratio=ratio, law=law), [0.9 * time, 1.1 * time])
+    assert (crossing.value, crossing.mode_number) == (pytest.approx(time, abs=0.006), degree)
+
+
+@pytest.mark.parametrize(
     ("field", "value"),
     [
         ("inner_radius", -1.0),
