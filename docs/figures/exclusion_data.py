@@ -31,10 +31,13 @@ COURSES = ("constant", "reduced")
 MESHES: dict[str, dict[str, str]] = {
     "paper": {},
     "one diagonal": {"grading": "uniform", "split": "one"},
-    "mean dilatation": {"element": "mean_dilatation"},
+    "quadratic triangles": {"element": "quadratic"},
 }
-# On meshes other than the paper's, every other value.
-FEW = ((0.0, 0.6, 2.6), (0.0, 0.14, 0.5, 1.0))
+# On meshes other than the paper's, these numbers and exponents.
+FEW = {
+    "one diagonal": ((0.0, 0.6, 2.6), (0.0, 0.14, 0.5, 1.0)),
+    "quadratic triangles": ((0.0, 0.6), (0.0, 0.14, 0.5)),
+}
 # By which the observations are judged: that of the best reading, and the standard one.
 JUDGED = (Index("picture", pen=0.2), STANDARD_INDEX)
 IDS = ("P3", "P4", "P6", "P7", "P12", "P13", "P15", "P17", "P18")
@@ -69,11 +72,10 @@ def keep(part: str, key: str, value: Any) -> None:
 
 def mechanics_of(mesh: str) -> Iterator[tuple[str, Mechanics]]:
     """Every reading of the diagram on a mesh, by its key."""
+    numbers, exponents = FEW.get(mesh, (NUMBERS, EXPONENTS))
     for course in COURSES:
-        for exponent in EXPONENTS:
-            for number in NUMBERS:
-                if mesh != "paper" and (number not in FEW[0] or exponent not in FEW[1]):
-                    continue
+        for exponent in exponents:
+            for number in numbers:
                 one = replace(BASE, number=number, exponent=exponent, course=course, **MESHES[mesh])
                 if number == 0.0:
                     one = replace(one, dissipation="none", course="constant")

@@ -27,7 +27,7 @@ GROUPS: dict[str, tuple[tuple[str, ...], str]] = {
 LINES = dict(
     zip(source.ONSETS, ("#0072B2", "#009E73", "#CC79A7", "#E69F00", "#D55E00", "#56B4E9"), strict=True)
 )
-TITLES = {"paper": "the paper's mesh"}
+TITLES = {"paper": "the paper's mesh", "one diagonal": "one diagonal, uniform layers"}
 COLUMNS, ROWS = 3, 2
 TEXT: dict[str, Any] = {"fontsize": 8, "family": FONT}
 SMALL: dict[str, Any] = {"fontsize": 7, "family": FONT}
@@ -52,14 +52,15 @@ def cell(axes: Axes, i: int, j: int, holds: dict[str, bool | None]) -> None:
 
 def panel(axes: Axes, data: dict[str, Any], mesh: str, course: str) -> None:
     """One mesh and course: drag to the right, exponent upwards."""
-    for j, exponent in enumerate(source.EXPONENTS):
-        for i, number in enumerate(source.NUMBERS):
+    numbers, exponents = source.FEW.get(mesh, (source.NUMBERS, source.EXPONENTS))
+    for j, exponent in enumerate(exponents):
+        for i, number in enumerate(numbers):
             found = data[mesh].get(f"{course} {exponent:g} {number:g}")
             if found:
                 cell(axes, i, j, found[str(source.JUDGED[0])]["holds"])
-    axes.set(xlim=(-0.6, len(source.NUMBERS) - 0.4), ylim=(-0.6, len(source.EXPONENTS) - 0.4))
-    axes.set_xticks(range(len(source.NUMBERS)), [f"{n:g}" if n else "none" for n in source.NUMBERS], **SMALL)
-    axes.set_yticks(range(len(source.EXPONENTS)), [f"{s:g}" for s in source.EXPONENTS], **SMALL)
+    axes.set(xlim=(-0.6, len(numbers) - 0.4), ylim=(-0.6, len(exponents) - 0.4), aspect="equal", anchor="W")
+    axes.set_xticks(range(len(numbers)), [f"{n:g}" if n else "none" for n in numbers], **SMALL)
+    axes.set_yticks(range(len(exponents)), [f"{s:g}" for s in exponents], **SMALL)
     axes.set_title(f"{TITLES.get(mesh, mesh)}, {course} drag", **TEXT)
     axes.tick_params(length=0)
     for side in axes.spines.values():
@@ -89,10 +90,11 @@ def main() -> None:
     """Draw the diagram."""
     data = source.known()
     meshes = [mesh for mesh in source.MESHES if data.get(mesh)]
-    height = 2.5 * len(meshes) + 3.2
+    heights = [0.5 * len(source.FEW.get(mesh, ((), source.EXPONENTS))[1]) for mesh in meshes]
+    height = sum(heights) + 0.55 * len(meshes) + 3.2
     figure = Figure(figsize=(7.2, height), facecolor="white", layout="constrained")
     FigureCanvasAgg(figure)
-    grid = figure.add_gridspec(len(meshes) + 1, 2, height_ratios=[1.0] * len(meshes) + [1.05])
+    grid = figure.add_gridspec(len(meshes) + 1, 2, height_ratios=[*heights, 2.6])
     for i, mesh in enumerate(meshes):
         for j, course in enumerate(source.COURSES):
             axes = figure.add_subplot(grid[i, j])
