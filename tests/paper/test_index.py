@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -114,3 +115,12 @@ def test_a_line_needs_a_width_that_can_be_drawn(word: str) -> None:
 def test_only_a_picture_has_a_line(word: str) -> None:
     with pytest.raises(ConfigError, match="is not known"):
         require_gi(word)
+
+
+def test_a_branch_that_the_configuration_follows_is_followed() -> None:
+    """Else a slice without jitter stays on its smooth, unstable branch, and no word is said."""
+    base = Config.preset("converged-slice")
+    assert point_of(base, Mechanics.of(base), Case(), 0).config.stability.follow_branch
+    dragged = replace(Mechanics.of(base), dissipation="drag", number=1.3)
+    assert not point_of(base, dragged, Case(), 0).config.stability.follow_branch
+    assert not point_of(Config(), Mechanics(), Case(), 0).config.stability.detect

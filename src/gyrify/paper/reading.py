@@ -163,7 +163,12 @@ def point_of(base: Config, mechanics: Mechanics, case: Case, seed: int) -> Point
     own = Mechanics.of(base).overrides
     other = {key: value for key, value in mechanics.overrides.items() if value != own[key]}
     parameters = {**other, **_as_many_nodes(base, mechanics), **case.overrides, "seed": seed}
-    return Point(parameters, base.with_overrides({**_PLAIN, **parameters}))
+    # a branch is found by detection, and dissipation has none
+    is_followed = (
+        base.stability.follow_branch and mechanics.dissipation == "none" and mechanics.split != "symmetric"
+    )
+    plain = {} if is_followed else _PLAIN
+    return Point(parameters, base.with_overrides({**plain, **parameters}))
 
 
 def _as_many_nodes(base: Config, mechanics: Mechanics) -> dict[str, object]:

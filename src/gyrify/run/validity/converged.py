@@ -37,7 +37,7 @@ class Limit:
 
 LIMITS: Final = (
     Limit({"kind": "drag", "number": 1.3, "course": "constant"}, False, 1.74, 0.03),
-    Limit({"kind": "none"}, True, 1.61, 0.02),
+    Limit({"kind": "none"}, True, 1.60, 0.02),
 )
 
 
