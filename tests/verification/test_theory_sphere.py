@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -69,11 +70,10 @@ def perturbed(sphere: Sphere, time: float, degree: int, fields: np.ndarray, step
 
 
 @pytest.mark.parametrize("sphere", [SOLID, HOLLOW, CLAMPED], ids=["solid", "hollow", "clamped"])
-@pytest.mark.parametrize("degree", [0, 1, 2, 5])
-@pytest.mark.parametrize("kind", ["spheroidal", "toroidal"])
+@pytest.mark.parametrize(
+    ("kind", "degree"), [*product(["spheroidal"], [0, 1, 2, 5]), *product(["toroidal"], [1, 2, 5])]
+)
 def test_second_variation_is_that_of_the_energy(sphere: Sphere, degree: int, kind: str) -> None:
-    if degree == 0 and kind == "toroidal":
-        return
     time, line = 300.0, sphere.line()
     x = line.nodes / sphere.outer_radius
     rise = x**2 * (x - sphere.inner_radius / sphere.outer_radius)
@@ -119,6 +119,16 @@ def test_state_is_in_balance_and_has_the_least_energy() -> None:
         for other in (1e-3 * x, -1e-3 * x**2):
             moved = replace(state, displacement=state.displacement + other)
             assert moved.energy > state.energy
+
+
+def test_size_and_stiffness_change_nothing_but_units() -> None:
+    """A millionfold larger or smaller sphere, or a stiffer one, is as near to its equilibrium."""
+    state = sphere_state(SOLID, 400.0)
+    for scale in (1e-6, 1e6):
+        size = {"outer_radius": 36.0 * scale, "cortical_thickness": 1.5 * scale, "young_modulus": 9e3 / scale}
+        other = sphere_state(replace(SOLID, **size), 400.0)
+        assert other.residual < 1e-9
+        assert other.displacement / scale == pytest.approx(state.displacement, rel=1e-7, abs=1e-9)
 
 
 def test_uniform_growth_of_a_free_sphere_is_free_of_stress() -> None:
@@ -179,6 +189,7 @@ def test_onset_of_the_documented_spheres(ratio: float, law: str, time: float, de
 @pytest.mark.parametrize(
     ("field", "value"),
     [
+        ("young_modulus", np.inf),
         ("inner_radius", -1.0),
         ("inner_radius", 34.5),
         ("growth_ratio", 0.0),

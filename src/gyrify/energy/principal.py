@@ -16,8 +16,6 @@ from gyrify.physics.stress import EQUAL
 # numba compiles what follows without annotations.
 # mypy: disable-error-code="no-untyped-def, no-untyped-call"
 
-# Relative distance of two squared stretches below which their difference quotients take the limit.
-
 
 def principal_kernel(n_dim: int, n_nodes: int, axial: int, material: int, digest: int) -> Any:
     """Energy, forces and matrices of all points; as `gyrify.energy.kernels` has them by invariants."""

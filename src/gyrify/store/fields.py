@@ -36,9 +36,8 @@ POINT_FIELDS: Final[frozenset[OutputField]] = frozenset(
     {"displacement", "thickness", "curvature", "contact_force"}
 )
 # Point fields that live on the contour alone.
-CONTOUR_FIELDS: Final[frozenset[OutputField]] = frozenset(
-    {"thickness", "curvature", "contact_force"}
-)  # Fields computed at integration points, whose means over the cells are given.
+CONTOUR_FIELDS: Final[frozenset[OutputField]] = frozenset({"thickness", "curvature", "contact_force"})
+# Fields computed at integration points, whose means over the cells are given.
 CELL_FIELDS: Final = frozenset(ALL_FIELDS) - POINT_FIELDS - {"region"}
 # Fields that do not change with growth.
 STATIC_FIELDS: Final[frozenset[OutputField]] = frozenset({"region"})

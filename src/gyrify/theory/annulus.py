@@ -85,7 +85,8 @@ def _problem(annulus: Annulus) -> RadialProblem:
     free = np.ones(len(line.nodes) + 1, dtype=np.bool_)
     free[0] = False
     free[-1] = annulus.out_of_plane == "generalised"
-    return RadialProblem(annulus, line, line.weights * line.points, strain[:, :, free], free)
+    force = annulus.young_modulus * annulus.outer_radius
+    return RadialProblem(annulus, line, line.weights * line.points, strain[:, :, free], free, force)
 
 
 def base_state(

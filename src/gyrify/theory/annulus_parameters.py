@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gyrify.errors import ConfigError
 from gyrify.theory.moduli import (
     EnergyPer,
     Law,
@@ -19,6 +18,7 @@ from gyrify.theory.moduli import (
     elastic_moduli,
     growth_stretch,
 )
+from gyrify.theory.radial import require_parameters, wall
 from gyrify.theory.spectral import Line
 
 FloatArray = NDArray[np.float64]
@@ -29,9 +29,6 @@ _CHOICES = {
     "energy_per": get_args(EnergyPer),
     "law": get_args(Law),
 }
-# White elements shrink towards the cortex, where folds live, and towards the clamp, where r' is steep.
-_WHITE_EDGES = (1.0, 0.95, 0.8, 0.5, 0.25, 0.125, 0.0)
-_CORTEX_ELEMENTS = 2
 
 
 @dataclass(frozen=True)
@@ -95,18 +92,7 @@ class Annulus:
     degree: int = 12
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if field.name in _CHOICES:
-                if value not in _CHOICES[field.name]:
-                    raise ConfigError(f"{field.name} is {value!r}.", f"Choose one of {_CHOICES[field.name]}.")
-            elif field.name == "out_of_plane_exponent":
-                if not 0.0 <= value < np.inf:
-                    raise ConfigError(f"{field.name} is {value}.", "It must be 0 or more.")
-            elif value is not None and "poisson" not in field.name and not 0.0 < value < np.inf:
-                raise ConfigError(f"{field.name} is {value}.", "It must be positive.")
-        if not self.inner_radius < self.interface_radius:
-            raise ConfigError("The cortex fills the whole wall.", "Use a thinner cortex or a smaller hole.")
+        require_parameters(self, _CHOICES, may_vanish=("out_of_plane_exponent",))
         # Evaluated for their checks of the moduli.
         _ = self.moduli_grey, self.moduli_white
 
@@ -128,9 +114,7 @@ class Annulus:
 
     def line(self) -> Line:
         """The elements across the wall, with an edge on the interface."""
-        white = self.interface_radius - (self.interface_radius - self.inner_radius) * np.array(_WHITE_EDGES)
-        grey = np.linspace(self.interface_radius, self.outer_radius, _CORTEX_ELEMENTS + 1)
-        return Line.build(np.concatenate([white, grey[1:]]), self.degree)
+        return wall(self.inner_radius, self.interface_radius, self.outer_radius, self.degree)
 
     def growth(self, radius: ArrayLike, growth_time: float) -> FloatArray:
         """Principal growth stretches.

@@ -166,15 +166,19 @@ def _notes(
 
 def _crossing(parameter: Parameter, value: float, state: SmoothState, was_unstable: bool) -> Crossing:
     weakest = stability_margin(state)
-    number, is_sphere = weakest.mode_number, isinstance(state, SphereState)
-    body = state.sphere if isinstance(state, SphereState) else state.annulus
+    number = weakest.mode_number
+    waves: float | None = number
+    body: Annulus | Sphere
+    if isinstance(state, SphereState):
+        body, waves = state.sphere, number and float(np.sqrt(number * (number + 1.0)))
+    else:
+        body = state.annulus
     length = 2.0 * np.pi * float(state.radius(body.outer_radius))
-    waves = number if number is None or not is_sphere else np.sqrt(number * (number + 1.0))
     return Crossing(
         parameter,
         value,
         number,
-        0.0 if waves is None else length / float(waves) if waves else np.inf,
+        0.0 if waves is None else length / waves if waves else np.inf,
         state.growth_time,
         "stable" if was_unstable else "unstable",
         weakest.at_edge,

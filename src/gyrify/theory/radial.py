@@ -1,9 +1,10 @@
-"""The energy of a body that moves along its radius alone, discretised, and its minimum under growth."""
+"""Bodies that move along their radius alone: parameters, discretised energy, and its minimum under growth."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Protocol
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, fields
+from typing import Any, Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,23 +15,62 @@ from gyrify.theory.spectral import Line
 
 FloatArray = NDArray[np.float64]
 
+# White elements shrink towards the cortex, where folds live, and towards a clamp, where r' is steep.
+_WHITE_EDGES: Final = (1.0, 0.95, 0.8, 0.5, 0.25, 0.125, 0.0)
+_CORTEX_ELEMENTS: Final = 2
 # Largest growth strain of the cortex between two solves.
 _LARGEST_STEP = 0.15
 _MAX_NEWTON = 50
 
 
+def require_parameters(
+    body: Any,
+    choices: Mapping[str, Collection[str]],
+    *,
+    may_vanish: Collection[str] = (),
+    may_be_infinite: Collection[str] = (),
+) -> None:
+    """Check the fields of a body: words by their lists, numbers by their signs, radii by their order.
+
+    Parameters
+    ----------
+    body : dataclass
+        Its fields are checked; Poisson's ratios are not, nor what is None.
+    choices : mapping
+        Allowed words by field.
+    may_vanish, may_be_infinite : collection of str
+        Fields that may be 0, or infinite.
+
+    Raises
+    ------
+    ConfigError
+        If a value is out of bounds.
+    """
+    for field in fields(body):
+        name, value = field.name, getattr(body, field.name)
+        if name in choices:
+            if value not in choices[name]:
+                raise ConfigError(f"{name} is {value!r}.", f"Choose one of {choices[name]}.")
+        elif name in may_vanish:
+            if not 0.0 <= value < np.inf:
+                raise ConfigError(f"{name} is {value}.", "It must be 0 or more.")
+        elif value is None or "poisson" in name or (value == np.inf and name in may_be_infinite):
+            continue
+        elif not 0.0 < value < np.inf:
+            raise ConfigError(f"{name} is {value}.", "It must be positive.")
+    if not body.inner_radius < body.interface_radius:
+        raise ConfigError("The cortex fills the whole wall.", "Use a thinner cortex or a smaller hole.")
+
+
+def wall(inner_radius: float, interface_radius: float, outer_radius: float, degree: int) -> Line:
+    """Elements across a wall, with an edge on the interface; radii in mm."""
+    white = interface_radius - (interface_radius - inner_radius) * np.array(_WHITE_EDGES)
+    grey = np.linspace(interface_radius, outer_radius, _CORTEX_ELEMENTS + 1)
+    return Line.build(np.concatenate([white, grey[1:]]), degree)
+
+
 class RadialBody(Protocol):
     """What is asked of a body."""
-
-    @property
-    def young_modulus(self) -> float:
-        """E of the cortex [Pa]."""
-        ...
-
-    @property
-    def outer_radius(self) -> float:
-        """Radius of the free surface [mm]."""
-        ...
 
     @property
     def growth_rate(self) -> float:
@@ -58,6 +98,9 @@ class RadialProblem:
         Stretches at the points per free unknown.
     free : (n_unknowns,) bool array
         Which unknowns are not held at zero.
+    force : float
+        What nodal forces are compared with: E_G times the outer radius in the plane [Pa mm], times its square
+        in space [Pa mm^2].
     """
 
     body: RadialBody
@@ -65,6 +108,7 @@ class RadialProblem:
     area: FloatArray
     strain: FloatArray
     free: NDArray[np.bool_]
+    force: float
 
     def solve(self, growth_time: float, start: FloatArray | None = None) -> tuple[FloatArray, float]:
         """Equilibrium at a growth time, from a nearby one if given; else in steps of growth.
@@ -81,7 +125,7 @@ class RadialProblem:
         unknowns : (n_unknowns,) float array
             Of the state, in balance to round-off.
         residual : float
-            Largest out-of-balance nodal force / (E_G x outer radius) [-].
+            Largest out-of-balance nodal force over `force` [-].
 
         Raises
         ------
@@ -101,7 +145,6 @@ class RadialProblem:
 
     def _newton(self, unknowns: FloatArray, growth_time: float) -> tuple[FloatArray, float]:
         """Newton's method; raises FloatingPointError where it does not converge."""
-        scale = self.body.young_modulus * self.body.outer_radius
         smallest = np.inf
         for _ in range(_MAX_NEWTON):
             stretch = 1.0 + self.strain @ unknowns[self.free]
@@ -109,7 +152,7 @@ class RadialProblem:
                 raise FloatingPointError
             response = self.body.response(self.line.points, stretch, growth_time)
             force = np.einsum("q,qi,qia->a", self.area, response.stress, self.strain)
-            size = float(np.max(np.abs(force)) / scale)
+            size = float(np.max(np.abs(force)) / self.force)
             # Stop where round-off takes over, not at a guessed tolerance.
             if size < 1e-8 and size >= 0.5 * smallest:
                 return unknowns, size

@@ -6,13 +6,12 @@ free. The state r(R) minimises 4 pi int psi(r', r/R, r/R) R^2 dR.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Final, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gyrify.errors import ConfigError
 from gyrify.theory.moduli import (
     EnergyPer,
     Law,
@@ -22,7 +21,7 @@ from gyrify.theory.moduli import (
     elastic_moduli,
     growth_stretch,
 )
-from gyrify.theory.radial import RadialProblem
+from gyrify.theory.radial import RadialProblem, require_parameters, wall
 from gyrify.theory.spectral import Line
 
 FloatArray = NDArray[np.float64]
@@ -32,9 +31,6 @@ _CHOICES: Final = {"hole": get_args(Hole), "stretch": get_args(Stretch)} | {
     "energy_per": get_args(EnergyPer),
     "law": get_args(Law),
 }
-# White elements shrink towards the cortex, where folds live, and towards a clamp, where r' is steep.
-_WHITE_EDGES: Final = (1.0, 0.95, 0.8, 0.5, 0.25, 0.125)
-_CORTEX_ELEMENTS: Final = 2
 
 
 @dataclass(frozen=True)
@@ -94,18 +90,7 @@ class Sphere:
     degree: int = 12
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if field.name in _CHOICES:
-                if value not in _CHOICES[field.name]:
-                    raise ConfigError(f"{field.name} is {value!r}.", f"Choose one of {_CHOICES[field.name]}.")
-            elif field.name == "inner_radius":
-                if not 0.0 <= value < np.inf:
-                    raise ConfigError(f"{field.name} is {value}.", "It must be 0 or more.")
-            elif field.name != "poisson_ratio" and not value > 0.0:
-                raise ConfigError(f"{field.name} is {value}.", "It must be positive.")
-        if not self.inner_radius < self.interface_radius < np.inf:
-            raise ConfigError("The cortex fills the whole wall.", "Use a thinner cortex or a smaller hole.")
+        require_parameters(self, _CHOICES, may_vanish=("inner_radius",), may_be_infinite=("growth_ratio",))
         # Evaluated for its check of the moduli.
         _ = self.moduli_grey
 
@@ -126,10 +111,7 @@ class Sphere:
 
     def line(self) -> Line:
         """The elements across the wall, with an edge on the interface."""
-        depth = self.interface_radius - self.inner_radius
-        white = self.interface_radius - depth * np.array([*_WHITE_EDGES, 0.0])
-        grey = np.linspace(self.interface_radius, self.outer_radius, _CORTEX_ELEMENTS + 1)
-        return Line.build(np.concatenate([white, grey[1:]]), self.degree)
+        return wall(self.inner_radius, self.interface_radius, self.outer_radius, self.degree)
 
     def growth(self, radius: ArrayLike, growth_time: float) -> FloatArray:
         """Radial and the two tangential growth stretches (n, 3) [-] at reference radii (n,) [mm]."""
@@ -172,7 +154,7 @@ class SphereState:
     displacement : (n_nodes,) float array
         r - R of the nodes [mm].
     residual : float
-        Largest out-of-balance nodal force / (E_G x outer radius) [mm].
+        Largest out-of-balance nodal force / (E_G x outer radius^2) [-].
     """
 
     sphere: Sphere
@@ -239,7 +221,8 @@ def sphere_state(
     free = np.ones(len(line.nodes), dtype=np.bool_)
     free[0] = sphere.inner_radius > 0.0 and not sphere.is_held
     strain = np.stack([line.slopes, hoop, hoop], axis=1)[:, :, free]
-    problem = RadialProblem(sphere, line, line.weights * line.points**2, strain, free)
+    force = sphere.young_modulus * sphere.outer_radius**2
+    problem = RadialProblem(sphere, line, line.weights * line.points**2, strain, free, force)
     is_near = guess is not None and np.array_equal(guess.line.nodes, line.nodes)
     unknowns, residual = problem.solve(time, guess.displacement if is_near and guess else None)
     return SphereState(sphere, time, line, unknowns, residual)

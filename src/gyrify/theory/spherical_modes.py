@@ -11,13 +11,13 @@ of a Y with a mean square of one over the unit sphere leave integrals over R alo
 principal stretches (1 radial), S those of the shears 12 and 21, and b, c those of the shears 23 and 32, with
 b + c = A_22 - A_23, since the tissue is isotropic along its layers:
 
-.. math:: \int R^2 dR \Big[ A_{11} U'^2 + 2 A_{12} U' e + \tfrac12 (A_{22} + A_{23}) e^2
-   + (A_{22} - A_{23}) (\tfrac12 L - 1) v^2 / R^2 + S_{11} a^2 + 2 S_{12} a v' + S_{22} v'^2 \Big],
+.. math:: \int R^2 dR \left[ A_{11} U'^2 + 2 A_{12} U' e + \tfrac12 (A_{22} + A_{23}) e^2
+   + (A_{22} - A_{23}) (\tfrac12 L - 1) v^2 / R^2 + S_{11} a^2 + 2 S_{12} a v' + S_{22} v'^2 \right],
 
 v = sqrt(L) V, e = (2 U - sqrt(L) v) / R, a = (sqrt(L) U - v) / R; and for w = sqrt(L) W
 
-.. math:: \int R^2 dR \Big[ S_{11} w^2 / R^2 - 2 S_{12} w w' / R + S_{22} w'^2
-   + (b L - b - c) w^2 / R^2 \Big] .
+.. math:: \int R^2 dR \left[ S_{11} w^2 / R^2 - 2 S_{12} w w' / R + S_{22} w'^2
+   + (b L - b - c) w^2 / R^2 \right] .
 """
 
 from __future__ import annotations
