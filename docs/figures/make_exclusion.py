@@ -61,7 +61,7 @@ def panel(axes: Axes, data: dict[str, Any], mesh: str, course: str) -> None:
     axes.set(xlim=(-0.6, len(numbers) - 0.4), ylim=(-0.6, len(exponents) - 0.4), aspect="equal", anchor="W")
     axes.set_xticks(range(len(numbers)), [f"{n:g}" if n else "none" for n in numbers], **SMALL)
     axes.set_yticks(range(len(exponents)), [f"{s:g}" for s in exponents], **SMALL)
-    axes.set_title(f"{TITLES.get(mesh, mesh)}, {course} drag", **TEXT)
+    axes.set_title(f"{TITLES.get(mesh, mesh)}, {course} drag", loc="left", **TEXT)
     axes.tick_params(length=0)
     for side in axes.spines.values():
         side.set_visible(False)
