@@ -68,9 +68,22 @@ class Opened:
             assert time.monotonic() < end, f"{script} did not come true"
             time.sleep(0.02)
 
+    def settle(self) -> None:
+        """Wait until the scene has been told its size; before, its places on the screen mean nothing."""
+        self.wait(
+            "(({ camera, canvas }) => camera.width >= 2 && Math.abs(camera.width - canvas.clientWidth) < 1)"
+            "(gyrify.panel.viewer)"
+        )
+
+    def on_screen(self, x: float, y: float) -> tuple[float, float]:
+        """Pixels (from the left and the top of the scene) of a point of the plane."""
+        self.settle()
+        px, py = self.run(f"gyrify.panel.viewer.camera.toScreen({float(x)!r}, {float(y)!r})")
+        return px, py
+
     def pixels(self) -> NDArray[np.int64]:
-        """(height, width, 3) colours of the scene, drawn now; before, its size must be known."""
-        self.wait("gyrify.panel.viewer.camera.width >= 2")
+        """(height, width, 3) colours of the scene, drawn now."""
+        self.settle()
         script = "() => { const v = gyrify.panel.viewer; v.drawNow(true); return v.canvas.toDataURL(); }"
         png = base64.b64decode(self.run(script).split(",")[1])
         return np.asarray(Image.open(io.BytesIO(png)).convert("RGB"), dtype=np.int64)
@@ -85,7 +98,7 @@ class Opened:
 
     def hover(self, x: float, y: float) -> str:
         """Text of the tooltip over a point of the plane; empty where there is none."""
-        px, py = self.run(f"gyrify.panel.viewer.camera.toScreen({x!r}, {y!r})")
+        px, py = self.on_screen(x, y)
         self.run("gyrify.panel.viewer.canvas.scrollIntoView({ block: 'center' })")
         box = self.page.locator("canvas").bounding_box()
         self.page.mouse.move(box["x"] + px, box["y"] + py)

@@ -71,7 +71,7 @@ def test_cells_have_the_colour_of_their_value(opened, folded: History) -> None:
     sizes = np.abs(edges[:, 0, 0] * edges[:, 1, 1] - edges[:, 0, 1] * edges[:, 1, 0])
     for cell in np.argsort(sizes)[-30:]:
         centre = x[cell].mean(axis=0)
-        px, py = opened.run(f"gyrify.panel.viewer.camera.toScreen({centre[0]}, {centre[1]})")
+        px, py = opened.on_screen(*centre)
         part = np.clip((values[cell] - low) / (high - low), 0.0, 1.0)
         expected = 255.0 * np.array(mpl.colormaps["viridis"](part)[:3])
         assert np.abs(picture[int(py), int(px)] - expected).max() < 6.0

@@ -165,7 +165,7 @@ def test_a_tap_shows_the_value_and_a_drag_does_not(browser, text: str, folded: H
     tip = opened.page.locator(".tooltip")
     for cell in (40, 900):
         x = folded.points()[folded.mesh.cells[cell]].mean(axis=0)
-        px, py = opened.run(f"gyrify.panel.viewer.camera.toScreen({x[0]}, {x[1]})")
+        px, py = opened.on_screen(x[0], x[1])
         box = canvas.bounding_box()
         opened.page.touchscreen.tap(box["x"] + px, box["y"] + py)
         opened.wait("!document.querySelector('.tooltip').hidden")
