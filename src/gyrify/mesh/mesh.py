@@ -31,7 +31,8 @@ class Mesh:
     region : (n_cells,) int8 array
         `WHITE` (0) or `GREY` (1).
     contour : (n_contour,) int array
-        Points of the free outer contour in order, counter-clockwise when it is closed.
+        Points of the free outer contour in order, counter-clockwise when it is closed; in space those of the
+        outer surface, by their numbers.
     interface : (n_interface,) int array
         Points of the grey-white interface in the same order and direction as the contour.
     clamped : (n_clamped,) int array
@@ -43,13 +44,17 @@ class Mesh:
     is_closed : bool
         Whether the contour is a closed loop (a ring) or runs along one period (a strip).
     period : float or None
-        Length of the period in x [mm] of a strip, None for a ring.
+        Length of the period in x [mm] of a strip or a patch, None for a closed body.
+    period_y : float or None
+        Length of the period in y [mm] of a patch.
     along : (n_points,) float array
         Position of each point along the layers, 0 to 1 and round again [-]; empty where a mesh has none.
     depth : (n_points,) float array
         Position across them: 0 on the clamped side, 1 on the interface, 2 on the contour [-]; likewise.
     mirrors : tuple of Mirror
         Lines across which the mesh is its own mirror image to the last bit, as far as it was built so.
+    faces, interface_faces : (n, 3) int array
+        In space, triangles of the outer surface and of the interface, counter-clockwise seen from outside.
     """
 
     points: FloatArray
@@ -65,6 +70,9 @@ class Mesh:
     mirrors: tuple[Mirror, ...] = ()
     along: FloatArray = field(default_factory=lambda: np.empty(0))
     depth: FloatArray = field(default_factory=lambda: np.empty(0))
+    period_y: float | None = None
+    faces: IntArray = field(default_factory=lambda: np.empty((0, 3), dtype=np.int64))
+    interface_faces: IntArray = field(default_factory=lambda: np.empty((0, 3), dtype=np.int64))
 
     def __post_init__(self) -> None:
         for array in (
@@ -78,6 +86,8 @@ class Mesh:
             self.patch,
             self.along,
             self.depth,
+            self.faces,
+            self.interface_faces,
         ):
             array.flags.writeable = False
 
@@ -99,10 +109,9 @@ class Mesh:
     @property
     def middles(self) -> tuple[FloatArray, FloatArray]:
         """(n_cells,) position along the layers, from 0 to 1, and depth of the middles of the cells [-]."""
+        nowhere, corners = np.full(self.n_cells, np.nan), self.cells[:, : self.n_dim + 1]
         if self.along.size == 0:
-            nowhere = np.full(self.n_cells, np.nan)
-            return nowhere, nowhere
-        corners = self.cells[:, : self.n_dim + 1]
+            return nowhere, self.depth[corners].mean(axis=1) if self.depth.size else nowhere
         along = self.along[corners]
         along = along[:, :1] + (along - along[:, :1] - np.round(along - along[:, :1]))
         return along.mean(axis=1) % 1.0, self.depth[corners].mean(axis=1)
@@ -123,7 +132,8 @@ class Mesh:
     def cell_points(self) -> FloatArray:
         """(n_cells, n_nodes, n_dim) reference coordinates of each cell, unwrapped across the period."""
         corners = self.points[self.cells]
-        if self.period is not None:
-            offset = corners[:, :, :1] - corners[:, :1, :1]
-            corners[:, :, :1] -= self.period * np.round(offset / self.period)
+        for axis, period in enumerate((self.period, self.period_y)):
+            if period is not None:
+                offset = corners[:, :, axis] - corners[:, :1, axis]
+                corners[:, :, axis] -= period * np.round(offset / period)
         return corners

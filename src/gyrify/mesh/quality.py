@@ -33,6 +33,25 @@ def triangle_quality(corners: FloatArray) -> FloatArray:
     return np.asarray(2.0 * np.sqrt(3.0) * double_area / np.square(edges).sum(axis=(1, 2)))
 
 
+def tetrahedron_quality(corners: FloatArray) -> FloatArray:
+    """Mean-ratio quality 12 (3 V)^(2/3) / sum of squared edges: 1 regular, 0 flat, negative inverted.
+
+    Parameters
+    ----------
+    corners : (n_cells, 4, 3) float array
+        Corner coordinates [mm].
+
+    Returns
+    -------
+    (n_cells,) float array
+    """
+    volume = np.linalg.det(corners[:, 1:] - corners[:, :1]) / 6.0
+    squares = sum(
+        np.square(corners[:, i] - corners[:, j]).sum(axis=1) for i in range(4) for j in range(i + 1, 4)
+    )
+    return np.asarray(12.0 * np.sign(volume) * np.abs(3.0 * volume) ** (2.0 / 3.0) / squares)
+
+
 def require_quality(mesh: Mesh, column: float, layers: FloatArray) -> None:
     """Refuse a mesh with inverted cells or slivers, and say what to change.
 
