@@ -45,7 +45,7 @@ class Superellipse(Ellipse):
 
 def superellipse(geometry: Any) -> Superellipse:
     """The shape of the section ``geometry`` of a configuration."""
-    return Superellipse(geometry.semi_axes, geometry.hole_fraction, geometry.cortical_thickness)
+    return Superellipse(geometry.outer_axes, geometry.hole_fraction, geometry.cortical_thickness)
 
 
 if __name__ == "__main__":

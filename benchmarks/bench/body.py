@@ -41,7 +41,7 @@ class Body:
     def of(problem: Slice) -> Body:
         """Body that is loaded within `CROSSINGS`."""
         config = problem.config
-        crossing = max(config.geometry.semi_axes) / np.sqrt(problem.parameters[0].max())
+        crossing = max(config.geometry.outer_axes) / np.sqrt(problem.parameters[0].max())
         duration = CROSSINGS * crossing
         drag = config.dissipation.number * config.material.young_modulus / config.geometry.drag_length**2
         return Body(problem, duration, drag * duration)

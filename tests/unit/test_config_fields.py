@@ -17,7 +17,8 @@ DEFAULTS: dict[str, Any] = {
     "schema_version": 1, "seed": 0,
     "geometry.shape": "ellipse", "geometry.area": 4069.0, "geometry.aspect_ratio": 1.2,
     "geometry.hole_fraction": 0.5, "geometry.cortical_thickness": 1.5,
-    "geometry.length": 40.0, "geometry.depth": 18.0,
+    "geometry.length": 40.0, "geometry.depth": 18.0, "geometry.width": 40.0,
+    "geometry.semi_axes": (39.4, 32.9, 32.9), "mesh.edge_length": 0.0,
     "mesh.n_around": 216, "mesh.n_layers": 17, "mesh.n_cortex_layers": 6, "mesh.grading": "geometric",
     "mesh.split": "alternating", "mesh.node_jitter": 1e-3, "mesh.element": "linear",
     "mesh.inversion_resistance": 0.0, "mesh.refine": 0, "mesh.refine_cortex": 0,
@@ -27,6 +28,7 @@ DEFAULTS: dict[str, Any] = {
     "growth.rate": 0.002, "growth.ratio": 3.6, "growth.duration": 500.0, "growth.out_of_plane": "blocked",
     "growth.out_of_plane_exponent": 1.0,
     "growth.stretch": "linear", "growth.energy_per": "grown", "growth.law": "isotropic",
+    "growth.profile": "sharp", "growth.transition": 0.0, "boundary.clamp": "hole",
     "contact.enabled": True, "contact.activation_fraction": 0.0667, "contact.barrier_stiffness": "auto",
     "dissipation.kind": "drag", "dissipation.number": 1.3, "dissipation.course": "constant",
     "solver.increments": 100, "solver.min_increment": 1e-6, "solver.tolerance": 1e-6,
@@ -37,7 +39,7 @@ DEFAULTS: dict[str, Any] = {
 }  # fmt: skip
 
 CHOICES = {
-    "geometry.shape": ["ellipse", "circle", "strip"],
+    "geometry.shape": ["ellipse", "circle", "strip", "sphere", "ellipsoid", "patch"],
     "mesh.grading": ["geometric", "uniform"],
     "mesh.split": ["alternating", "one", "random"],
     "mesh.element": ["linear", "quadratic", "mean_dilatation"],
@@ -45,7 +47,9 @@ CHOICES = {
     "dissipation.course": ["constant", "reduced"],
     "growth.stretch": ["linear", "exponential"],
     "growth.energy_per": ["grown", "reference"],
-    "growth.law": ["isotropic", "tangential"],
+    "growth.law": ["isotropic", "tangential", "area"],
+    "growth.profile": ["sharp", "sigmoid"],
+    "boundary.clamp": ["hole", "none"],
     "dissipation.kind": ["drag", "kelvin_voigt", "none"],
     "solver.regularisation": ["shift", "projection"],
     "solver.linear_solver": ["auto", "pardiso", "superlu"],
@@ -65,6 +69,9 @@ INSIDE_AND_OUTSIDE: dict[str, tuple[list[float], list[float]]] = {
     "geometry.cortical_thickness": ([ABOVE_ZERO, 15.6], [0.0, 15.7, -1.5]),
     "geometry.length": ([0.5], [0.0, -1.0]),
     "geometry.depth": ([2.0], [0.0, -1.0]),
+    "geometry.width": ([2.0], [0.0, -1.0]),
+    "mesh.edge_length": ([0.0, 2.0], [-ABOVE_ZERO, math.nextafter(1e5, UP)]),
+    "growth.transition": ([0.0, 2.0], [-ABOVE_ZERO, math.nextafter(1e5, UP)]),
     "mesh.n_around": ([24, 4096], [23, 4097]),
     "mesh.n_layers": ([7, 512], [2, 6, 513]),
     "mesh.n_cortex_layers": ([2, 16], [1, 17]),
@@ -94,6 +101,11 @@ INSIDE_AND_OUTSIDE: dict[str, tuple[list[float], list[float]]] = {
     "limits.wall_time": ([0.0, 3600.0], [-1.0]),
     "limits.memory": ([0.0, 600.0], [-1.0]),
 }
+# What some keys need beside them.
+BESIDE = {
+    "growth.transition": {"growth.profile": "sigmoid"},
+    "mesh.edge_length": {"geometry.shape": "sphere"},
+}
 NUMBERS = sorted(INSIDE_AND_OUTSIDE)
 COUNTS = [key for key in NUMBERS if type(DEFAULTS[key]) is int]
 
@@ -118,7 +130,7 @@ def test_default(key: str) -> None:
 
 @pytest.mark.parametrize(("key", "value"), [(k, v) for k in NUMBERS for v in INSIDE_AND_OUTSIDE[k][0]])
 def test_bound_is_allowed(key: str, value: float) -> None:
-    assert value_of(Config().replace(**{key: value}), key) == value
+    assert value_of(Config().replace(**BESIDE.get(key, {}), **{key: value}), key) == value
 
 
 @pytest.mark.parametrize(("key", "value"), [(k, v) for k in NUMBERS for v in INSIDE_AND_OUTSIDE[k][1]])
@@ -188,12 +200,12 @@ def test_white_matter_follows_the_cortex_until_it_has_its_own_value() -> None:
 
 def test_derived_values() -> None:
     geometry = Geometry()
-    a, b = geometry.semi_axes
+    a, b = geometry.outer_axes
     assert (round(a, 2), round(b, 2), round(geometry.mean_radius, 1)) == (39.42, 32.85, 36.0)
     assert math.isclose(math.pi * a * b, 4069.0)
     assert geometry.narrowest_wall == b / 2
     circle = Geometry(shape="circle", hole_fraction=0.25)
-    assert circle.semi_axes == (circle.mean_radius, circle.mean_radius)
+    assert circle.outer_axes == (circle.mean_radius, circle.mean_radius)
     assert circle.narrowest_wall == 0.75 * circle.mean_radius
     assert Geometry(shape="strip", depth=7.0).narrowest_wall == 7.0
     assert Growth(rate=0.002, ratio=4).rate_white == 0.0005

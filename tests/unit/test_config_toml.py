@@ -169,6 +169,14 @@ def test_preset_name_is_not_hashed() -> None:
     assert Config.from_toml('preset = "reference-slice"').config_hash == Config().config_hash
 
 
+# What some keys need beside them.
+BESIDE: dict[str, dict[str, Any]] = {
+    "stability.follow_branch": {"dissipation.kind": "none"},
+    "growth.transition": {"growth.profile": "sigmoid"},
+    "mesh.edge_length": {"geometry.shape": "sphere"},
+}
+
+
 def changed(value: Any, key: str) -> Any:
     words = {
         "geometry.shape": "circle",
@@ -179,6 +187,9 @@ def changed(value: Any, key: str) -> Any:
         "growth.stretch": "exponential",
         "growth.energy_per": "reference",
         "growth.law": "tangential",
+        "growth.profile": "sigmoid",
+        "boundary.clamp": "none",
+        "geometry.semi_axes": (40.0, 33.0, 33.0),
         "material.law": "another",
         "contact.barrier_stiffness": 5.0,
         "dissipation.kind": "none",
@@ -198,8 +209,7 @@ def changed(value: Any, key: str) -> Any:
 @pytest.mark.parametrize("row", [r for r in rows(Config()) if r.key != "schema_version"], ids=lambda r: r.key)
 def test_hash_sees_what_matters(row: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(materials, "MATERIALS", [NEO_HOOKEAN, replace(NEO_HOOKEAN, name="another")])
-    # to follow a branch needs a tissue without dissipation
-    free = {"dissipation.kind": "none"} if row.key == "stability.follow_branch" else {}
+    free = BESIDE.get(row.key, {})
     config = Config().replace(**free, **{row.key: changed(row.value, row.key)})
     assert config != Config().replace(**free)
     unseen = row.key.partition(".")[0] in ("output", "limits")

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
+from gyrify.config import space_checks
+
 if TYPE_CHECKING:
     from gyrify.config.settings import Config
 
@@ -26,6 +28,7 @@ def faults(config: Config) -> list[str]:
         _axial,
         _transitions,
         _symmetry,
+        *space_checks.CHECKS,
     )
     return [fault for check in checks if (fault := check(config))]
 
@@ -46,11 +49,9 @@ def _white_matter(config: Config) -> str:
     wall = geometry.narrowest_wall
     if geometry.cortical_thickness < MAX_WALL_SHARE * wall:
         return ""
-    remedy = (
-        "geometry.depth"
-        if geometry.shape == "strip"
-        else "geometry.area, or a smaller geometry.hole_fraction"
-    )
+    size = "geometry.semi_axes" if geometry.n_dim == 3 else "geometry.area"
+    is_flat = geometry.shape in ("strip", "patch")
+    remedy = "geometry.depth" if is_flat else f"{size}, or a smaller geometry.hole_fraction"
     return (
         f"geometry.cortical_thickness = {geometry.cortical_thickness!r} is not allowed: too little "
         f"white matter is left, it must be below 0.95 of the narrowest wall, "
@@ -61,6 +62,8 @@ def _white_matter(config: Config) -> str:
 
 def _cells(config: Config) -> str:
     mesh = config.mesh
+    if config.geometry.n_dim == 3:
+        return _cells_in_space(config)
     times = mesh.refine + mesh.refine_cortex
     column = 2 * mesh.n_layers * 4**times
     cells = column * mesh.n_around
@@ -77,6 +80,17 @@ def _cells(config: Config) -> str:
         else f"Try mesh.refine = {refine} and mesh.refine_cortex = {fits - refine}."
     )
     return f"mesh: up to {cells} cells are not allowed: at most {MAX_CELLS}. {advice}"
+
+
+def _cells_in_space(config: Config) -> str:
+    cells = space_checks.n_cells(config)
+    if cells <= MAX_CELLS:
+        return ""
+    enough = math.ceil(100.0 * space_checks.edge_length(config) * math.sqrt(cells / MAX_CELLS)) / 100.0
+    return (
+        f"mesh: about {cells:.3g} cells are not allowed: at most {MAX_CELLS}. "
+        f"Try mesh.edge_length = {enough:g}, or fewer layers."
+    )
 
 
 def _growth(config: Config) -> str:

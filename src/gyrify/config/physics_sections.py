@@ -2,24 +2,14 @@
 
 from __future__ import annotations
 
-import math
-from typing import Annotated, Final, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
 from gyrify.config.base import Section, setting
+from gyrify.config.body_sections import PAPER
 from gyrify.config.registered import Registered
 
-PAPER: Final = "Wang 2019"
-# Of the standard slice: area inside its contour [mm²] and thickness of its cortex [mm].
-STANDARD_AREA: Final = 4069.0
-STANDARD_THICKNESS: Final = 1.5
-
-
-Shape = Annotated[
-    str,
-    Registered(("ellipse", "circle", "strip"), "gyrify.mesh.shapes", lambda module: module.SHAPES),
-]
 Law = Annotated[
     str,
     Registered(
@@ -29,137 +19,6 @@ Law = Annotated[
     ),
 ]
 Stiffness = Annotated[float, Field(gt=0, le=1e15)]
-
-
-class Geometry(Section):
-    """The slice: a hollow ellipse or circle, or a strip that is periodic in x and clamped below."""
-
-    shape: Shape = setting("ellipse", "Shape of the slice.", source=f"{PAPER}, Fig. 1")
-    area: float = setting(
-        STANDARD_AREA,
-        "Area inside the outer contour, hole included; ellipse and circle only.",
-        unit="mm²",
-        source=f"{PAPER}, Fig. 1 (40.69 cm²)",
-        gt=0,
-        le=1e10,
-    )
-    aspect_ratio: float = setting(
-        1.2,
-        "Long over short axis of the ellipse; ignored by circle and strip.",
-        source=f"{PAPER}, Fig. 1",
-        ge=1,
-        le=3,
-    )
-    hole_fraction: float = setting(
-        0.5,
-        "Axes of the clamped hole over axes of the contour; ellipse and circle only.",
-        source=f"{PAPER}, Fig. 1",
-        ge=0.1,
-        le=0.9,
-    )
-    cortical_thickness: float = setting(
-        STANDARD_THICKNESS,
-        "Initial thickness T of the cortex, less than 0.95 of the narrowest wall.",
-        unit="mm",
-        source=f"{PAPER}, Mathematical Model",
-        gt=0,
-    )
-    length: float = setting(
-        40.0, "Period of the strip in x; ignored by ellipse and circle.", unit="mm", gt=0, le=1e5
-    )
-    depth: float = setting(
-        18.0,
-        "Depth of the strip, cortex included (default: the mean wall of the standard slice).",
-        unit="mm",
-        gt=0,
-        le=1e5,
-    )
-
-    @property
-    def semi_axes(self) -> tuple[float, float]:
-        """Semi-axes (a, b) of the outer contour of an ellipse or circle [mm]."""
-        ratio = self.aspect_ratio if self.shape == "ellipse" else 1.0
-        minor = math.sqrt(self.area / (math.pi * ratio))
-        return ratio * minor, minor
-
-    @property
-    def mean_radius(self) -> float:
-        """Mean radius R = √(ab) of an ellipse or circle [mm]."""
-        return math.sqrt(self.area / math.pi)
-
-    @property
-    def drag_length(self) -> float:
-        """Length R of the drag number: the mean radius, or the depth of a strip [mm]."""
-        return self.depth if self.shape == "strip" else self.mean_radius
-
-    @property
-    def scale(self) -> float:
-        """Size of the body over that of the standard slice [-]: what lengths of measuring scale with.
-
-        Mean radii of an ellipse or circle. The folds of a strip know no length but the thickness of its
-        cortex: its depth and its period stand for a body without end.
-        """
-        if self.shape == "strip":
-            return self.cortical_thickness / STANDARD_THICKNESS
-        return math.sqrt(self.area) / math.sqrt(STANDARD_AREA)
-
-    @property
-    def narrowest_wall(self) -> float:
-        """Smallest distance from the contour to the clamped boundary [mm]."""
-        if self.shape == "strip":
-            return self.depth
-        return self.semi_axes[1] * (1.0 - self.hole_fraction)
-
-
-class MeshSettings(Section):
-    """How the slice is divided into cells."""
-
-    n_around: int = setting(
-        216,
-        "Points on the outer contour (along a period of the strip).",
-        source=f"{PAPER}, Results",
-        ge=24,
-        le=4096,
-    )
-    n_layers: int = setting(
-        17,
-        "Layers from the clamped boundary to the contour.",
-        source=f"{PAPER}, Results (7344 triangles / 216 / 2)",
-        ge=3,
-        le=512,
-    )
-    n_cortex_layers: int = setting(
-        6,
-        "Layers in the cortex, fewer than n_layers.",
-        source=f"{PAPER}, Results (at least six)",
-        ge=2,
-        le=511,
-    )
-    grading: Literal["geometric", "uniform"] = setting(
-        "geometric", "White layers: geometric (the first as thick as a cortical one) or uniform."
-    )
-    split: Literal["alternating", "one", "random", "symmetric"] = setting(
-        "alternating",
-        "How each quadrilateral is cut into two triangles; symmetric: the mesh and the folds are their own "
-        "mirror image.",
-    )
-    node_jitter: float = setting(
-        1e-3,
-        "Seeded random shift of the points, as a fraction of the local layer (mirrored: symmetric split).",
-        ge=0,
-        le=0.1,
-    )
-    element: Literal["linear", "quadratic", "mean_dilatation"] = setting(
-        "linear", "Finite element.", source=f"{PAPER}, Results (3-node triangles)"
-    )
-    inversion_resistance: float = setting(
-        0.0,
-        "Stiffness over E_G that keeps quadratic cells from inverting beside integration points; 0: none.",
-        ge=0,
-        le=10,
-    )
-    refine: int = setting(0, "Times the whole mesh is refined by halving.", ge=0, le=4)
-    refine_cortex: int = setting(0, "Times the cortex alone is refined by halving.", ge=0, le=4)
 
 
 class Material(Section):
@@ -237,9 +96,22 @@ class Growth(Section):
         "linear", "Growth stretch: linear (1 + G t) or exponential (exp G t)."
     )
     energy_per: Literal["grown", "reference"] = setting("grown", "Volume that the energy density refers to.")
-    law: Literal["isotropic", "tangential"] = setting(
-        "isotropic", "Direction of growth in the plane: all, or along the layers of the cortex only."
+    law: Literal["isotropic", "tangential", "area"] = setting(
+        "isotropic",
+        "Direction of growth: all, or along the layers of the cortex only (tangential; area is its name in "
+        "space).",
     )
+    profile: Literal["sharp", "sigmoid"] = setting(
+        "sharp", "Growth rate across the interface: a step, or 1/(1 + exp((d − T)/transition)), d the depth."
+    )
+    transition: float = setting(
+        0.0, "Width of the sigmoid profile; 0: a tenth of T.", unit="mm", ge=0, le=1e5
+    )
+
+    @property
+    def is_tangential(self) -> bool:
+        """Whether the cortex grows along its layers alone."""
+        return self.law != "isotropic"
 
     @property
     def rate_white(self) -> float:
@@ -247,8 +119,18 @@ class Growth(Section):
         return self.rate / self.ratio
 
 
+class Boundary(Section):
+    """What holds the body."""
+
+    clamp: Literal["hole", "none"] = setting(
+        "hole",
+        "What is held: the hole (or the lower side of a strip or a patch), or nothing; a solid body has no "
+        "hole, and is free.",
+    )
+
+
 class Contact(Section):
-    """Self-contact of the outer contour."""
+    """Self-contact of the outer contour or surface."""
 
     enabled: bool = setting(True, "Whether the contour may not cross itself; off only for comparison.")
     activation_fraction: float = setting(

@@ -14,8 +14,9 @@ from pydantic import model_validator
 from gyrify.base.arguments import Pathlike, as_path, plain_tables
 from gyrify.config import cross_checks, toml_text
 from gyrify.config.base import Section, setting
+from gyrify.config.body_sections import Geometry, MeshSettings
 from gyrify.config.faults import raise_faults, sections, unknown_key
-from gyrify.config.physics_sections import Contact, Dissipation, Geometry, Growth, Material, MeshSettings
+from gyrify.config.physics_sections import Boundary, Contact, Dissipation, Growth, Material
 from gyrify.config.preset_files import preset_data
 from gyrify.config.run_sections import Limits, Metrics, Output, SchemaVersion, Solver, Stability
 from gyrify.config.words import extra, shorten, show
@@ -25,7 +26,13 @@ NOT_HASHED: Final = frozenset({"output", "limits"})
 # Keys that came later, with their section: at its default such a key is not hashed, so that the hashes of
 # earlier configurations stay.
 LATER: Final = (
+    ("geometry", "width"),
+    ("geometry", "semi_axes"),
+    ("mesh", "edge_length"),
     ("mesh", "inversion_resistance"),
+    ("growth", "profile"),
+    ("growth", "transition"),
+    ("boundary", "clamp"),
     ("growth", "out_of_plane_exponent"),
     ("dissipation", "course"),
     ("material", "law"),
@@ -45,6 +52,7 @@ class Config(Section):
     mesh: MeshSettings = MeshSettings()
     material: Material = Material()
     growth: Growth = Growth()
+    boundary: Boundary = Boundary()
     contact: Contact = Contact()
     dissipation: Dissipation = Dissipation()
     solver: Solver = Solver()
@@ -201,8 +209,9 @@ class Config(Section):
         """SHA-256 (hexadecimal) of the canonical JSON of every value outside `output` and `limits`."""
         hashed = {key: value for key, value in self.to_dict().items() if key not in NOT_HASHED}
         for name, key in LATER:
-            if hashed[name][key] == sections(type(self))[name].model_fields[key].default:
+            if getattr(getattr(self, name), key) == sections(type(self))[name].model_fields[key].default:
                 del hashed[name][key]
+        hashed = {key: value for key, value in hashed.items() if value != {}}
         text = json.dumps(hashed, sort_keys=True, separators=(",", ":"), allow_nan=False)
         return hashlib.sha256(text.encode("ascii")).hexdigest()
 

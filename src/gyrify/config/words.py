@@ -111,6 +111,8 @@ def allowed(field: FieldInfo) -> str:
     parts = ["true or false"] if bool in kinds else []
     if is_number(field):
         parts.append(f"a {'whole ' if int in kinds else ''}number{_range(bounds(field))}{unit}")
+    if typing.get_origin(kinds[0]) is tuple and not choices(field):
+        parts.append(f"a list of {len(typing.get_args(kinds[0]))} numbers{_range(bounds(field))}{unit}")
     words = [show(word) for word in choices(field)]
     if words:
         listed = ", ".join(words[:-1]) + " or " + words[-1] if len(words) > 1 else words[0]

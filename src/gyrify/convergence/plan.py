@@ -77,7 +77,7 @@ def contour_nodes(config: Config) -> int:
 def _contour_length(config: Config) -> float:
     if config.geometry.shape == "strip":
         return config.geometry.length
-    a, b = config.geometry.semi_axes
+    a, b = config.geometry.outer_axes
     angle = 2.0 * np.pi * np.arange(720) / 720
     return float(2.0 * np.pi * np.hypot(a * np.sin(angle), b * np.cos(angle)).mean())
 

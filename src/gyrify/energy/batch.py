@@ -19,6 +19,8 @@ from gyrify.physics.stress import coefficients
 
 # Points of a batch: enough for long loops, few enough to stay in the first cache.
 BATCH = 64
+# Part of a step by which a place next to an inversion is missed.
+ROOT = 1e-6
 
 
 @njit(cache=True, inline="always")
@@ -103,6 +105,49 @@ def step_to_inversion(n, F, D, steps):
     for l in range(n):
         smallest = min(smallest, steps[l])
     return smallest
+
+
+@njit(cache=True)
+def step_to_inversion_in_space(n, F, D, longest):
+    """Step up to which det(F + s D) of every point, a cubic in s, stays positive; at most ``longest``."""
+    for l in range(n):
+        c0 = c1 = c2 = c3 = 0.0
+        for i in range(3):
+            a, b = (i + 1) % 3, (i + 2) % 3
+            # the minors of the two rows after row i, of F, mixed, and of D
+            for j in range(3):
+                c, d = (j + 1) % 3, (j + 2) % 3
+                f = F[a, c, l] * F[b, d, l] - F[a, d, l] * F[b, c, l]
+                g = D[a, c, l] * D[b, d, l] - D[a, d, l] * D[b, c, l]
+                if i == 0:
+                    c0 += F[i, j, l] * f
+                    c3 += D[i, j, l] * g
+                c1 += D[i, j, l] * f
+                c2 += F[i, j, l] * g
+        longest = positive_until(c0, c1, c2, c3, longest)
+    return longest
+
+
+@njit(cache=True)
+def positive_until(c0, c1, c2, c3, longest):
+    """Up to where c0 + c1 s + c2 s^2 + c3 s^3 is known to be positive, from 0; at most ``longest``.
+
+    It is between two places where all coefficients of its Bernstein form there are; next to a root these
+    places come ever closer.
+    """
+    s, h = 0.0, longest
+    while s < longest and h > ROOT * longest:
+        h = min(h, longest - s)
+        # value and slopes at s, over h
+        p0, p1 = c0 + s * (c1 + s * (c2 + s * c3)), h * (c1 + s * (2.0 * c2 + s * 3.0 * c3))
+        p2, p3 = h * h * (c2 + 3.0 * s * c3), h * h * h * c3
+        b1, b2, b3 = p0 + p1 / 3.0, p0 + 2.0 * p1 / 3.0 + p2 / 3.0, p0 + p1 + p2 + p3
+        if p0 > 0.0 and b1 > 0.0 and b2 > 0.0 and b3 > 0.0:
+            s += h
+            h *= 2.0
+        else:
+            h *= 0.5
+    return s
 
 
 @njit(cache=True, inline="always")

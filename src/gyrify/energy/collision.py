@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+import numpy as np
+
 from gyrify.energy.term import FloatArray, IntArray
 
 
@@ -16,15 +18,21 @@ class PairSum:
     ----------
     value : float
         Energy [Pa mm^2].
-    gradient : (n_vertices, 2) float array or None
+    gradient : (n_vertices, n_dim) float array or None
         Its derivative [Pa mm].
     entries : tuple of arrays or None
-        Rows, columns (vertex-major, two each; row <= column) and values [Pa] of the Hessian.
+        Rows, columns (vertex-major, n_dim each; row <= column) and values [Pa] of the Hessian.
     """
 
     value: float
     gradient: FloatArray | None = None
     entries: tuple[IntArray, IntArray, FloatArray] | None = None
+
+
+def vertex_and_ends(pairs: IntArray, edges: IntArray) -> IntArray:
+    """(2 n, 2) vertex and end of the edge, of (n, 2) pairs of a vertex and an edge."""
+    vertices = np.repeat(pairs[:, :1], 2, axis=1)
+    return np.stack([vertices.ravel(), edges[pairs[:, 1]].ravel()], axis=1)
 
 
 class Barrier(Protocol):
@@ -36,14 +44,14 @@ class Barrier(Protocol):
 
 
 class CollisionContour(Protocol):
-    """A contour as one library sees it; deformed vertices are (n_vertices, 2) float arrays [mm]."""
+    """A contour as one library sees it; deformed vertices are (n_vertices, n_dim) float arrays [mm]."""
 
     def pairs(self, vertices: FloatArray, inflation: float) -> Any:
         """Vertices and edges whose boxes meet, each grown by a distance [mm] on all sides."""
         ...
 
-    def pair_array(self, pairs: Any) -> IntArray:
-        """(n_pairs, 2) vertex and edge of each pair."""
+    def coupled(self, pairs: Any) -> IntArray:
+        """(n, 2) vertices of the collision mesh that pairs couple: those on either side of each."""
         ...
 
     def is_path_free(self, start: FloatArray, end: FloatArray) -> bool:

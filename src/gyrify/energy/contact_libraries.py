@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Final, Literal
 
 from gyrify.energy.collision import CollisionContour
-from gyrify.energy.periodic_line import Polyline
-from gyrify.energy.term import FloatArray
+from gyrify.energy.term import FloatArray, IntArray
 
 LibraryName = Literal["auto", "ipctk", "gyrify"]
 # The kernels of `gyrify.energy.planar` need no other package.
@@ -33,26 +32,46 @@ def contact_library(name: LibraryName = "auto") -> LibraryName:
 
 
 def collision_contour(
-    reference: FloatArray, line: Polyline, n_own: int | None, name: LibraryName = "auto"
+    reference: FloatArray,
+    edges: IntArray,
+    n_own: int | None,
+    name: LibraryName,
+    faces: IntArray,
+    source: IntArray,
 ) -> CollisionContour:
     """Contour of a library.
 
     Parameters
     ----------
-    reference : (n_vertices, 2) float array
+    reference : (n_vertices, n_dim) float array
         Undeformed vertices [mm].
-    line : Polyline
-        Vertices and edges.
+    edges : (n_edges, 2) int array
+        Vertices of each edge.
     n_own : int or None
         Number of vertices of a periodic contour, which come first, its images after them; None where it is
         not periodic.
     name : str
         Library.
+    faces : (n_faces, 3) int array
+        Vertices of each triangle of a surface; none in the plane.
+    source : (n_vertices,) int array
+        Which vertices are images of one another: those of one number.
+
+    Raises
+    ------
+    ImportError
+        If contact in space is asked for where the IPC Toolkit is not installed.
     """
     if contact_library(name) == OWN:
+        if faces.size:
+            raise ImportError("contact in space needs the IPC Toolkit (ipctk)")
         from gyrify.energy.planar import PlanarContour
 
-        return PlanarContour(reference, line.edges, n_own)
+        return PlanarContour(reference, edges, n_own)
+    if faces.size:
+        from gyrify.energy.toolkit_surface import ToolkitSurface
+
+        return ToolkitSurface(reference, edges, faces, n_own, source)
     from gyrify.energy.toolkit import ToolkitContour
 
-    return ToolkitContour(reference, line.edges, n_own)
+    return ToolkitContour(reference, edges, n_own)

@@ -25,6 +25,7 @@ from gyrify.energy.batch import (
     load,
     products,
     step_to_inversion,
+    step_to_inversion_in_space,
     store,
     weigh_moduli,
 )
@@ -192,15 +193,10 @@ def _dissipate(n_dim: int, n_nodes: int, digest: int) -> Any:
 def _largest_step(n_dim: int, n_nodes: int, digest: int) -> Any:
     @njit(cache=True, error_model="numpy")
     def largest_step(u, du, cells, base, gradients):  # type: ignore[no-untyped-def]
-        """Smallest positive root over the points of det(F + s D) = 0, at most 1.
-
-        In the plane the determinant is a quadratic in s with an exact root; in space the step is halved
-        until nothing is inverted at its end.
-        """
+        """Smallest positive root over the points of det(F + s D) = 0, at most 1; in space just below it."""
         x, g = np.empty((n_nodes, n_dim, BATCH)), np.empty((n_nodes, n_dim, BATCH))
         F, D = np.empty((n_dim + 0 * digest, n_dim, BATCH)), np.empty((n_dim, n_dim, BATCH))
-        H, scratch = np.empty((n_dim, n_dim, BATCH)), np.empty(BATCH)
-        largest = 1.0
+        scratch, largest = np.empty(BATCH), 1.0
         for first in range(0, cells.shape[0], BATCH):
             n = min(BATCH, cells.shape[0] - first)
             gather(n_dim, n_nodes, first, n, u, cells, x)
@@ -213,8 +209,7 @@ def _largest_step(n_dim: int, n_nodes: int, digest: int) -> Any:
             if n_dim == 2:
                 largest = min(largest, step_to_inversion(n, F, D, scratch))
             else:
-                while largest > 1e-12 and not invert_all(n_dim, n, F + largest * D, H, scratch):
-                    largest *= 0.5
+                largest = step_to_inversion_in_space(n, F, D, largest)
         return largest
 
     return largest_step

@@ -5,7 +5,8 @@ r"""Linear cells without volumetric locking: the volume ratio is averaged over p
    \bar J_p = \frac{1}{w_p} \sum_{c \in p} w_c J_e, \; w_p = \sum_{c \in p} w_c
 
 A patch is the pair of triangles of a quadrilateral (three where columns are halved): one constraint per
-quadrilateral instead of two, as many as a mixed quadrilateral with constant pressure has.
+quadrilateral instead of two, as many as a mixed quadrilateral with constant pressure has. In space it is the
+three tetrahedra of a prism (seven where a surface coarsens).
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 
 from gyrify.energy.elastic import CellPattern, ElasticEnergy
 from gyrify.energy.kinematics import ElasticKinematics
+from gyrify.energy.patch_kernels import add_patch_products, volume_ratios
 from gyrify.energy.term import Evaluation, FloatArray, Hessian, IntArray, Pattern
 from gyrify.physics.materials import NEO_HOOKEAN, Material
 
@@ -36,30 +38,38 @@ class PatchPattern:
     def __init__(self, cells: IntArray, patch: IntArray, n_dim: int, within: Pattern) -> None:
         self.patch = patch
         self.n_patches = int(patch.max()) + 1
-        self.pairs = _pairs_in_patches(patch)
-        dofs = (cells[:, :, None] * n_dim + np.arange(n_dim)).reshape(cells.shape[0], -1)
-        rows, cols = np.broadcast_arrays(dofs[self.pairs[:, 0], :, None], dofs[self.pairs[:, 1], None, :])
-        self.upper = rows <= cols
-        self.pattern, self.position = Pattern.of(rows[self.upper], cols[self.upper])
-        stride = int(self.pattern.cols.max()) + 1
-        codes = self.pattern.rows * stride + self.pattern.cols
-        self.within = np.searchsorted(codes, within.rows * stride + within.cols)
+        self.order = np.argsort(patch, kind="stable")
+        self.starts = np.searchsorted(patch[self.order], np.arange(self.n_patches + 1))
+        # The nodes of each patch in order, so that rows of its entries come before columns.
+        stride = int(cells.max()) + 1
+        codes, number = np.unique(patch[:, None] * stride + cells, return_inverse=True)
+        self.corners = np.searchsorted(codes // stride, np.arange(self.n_patches + 1))
+        self.local = number.reshape(cells.shape) - self.corners[patch][:, None]
+        rows, cols = _entries(codes % stride, self.corners, n_dim)
+        self.pattern, position = Pattern.of(rows, cols)
+        self.position = position.astype(np.int32)
+        width = int(self.pattern.cols.max()) + 1
+        entries = self.pattern.rows * width + self.pattern.cols
+        self.within = np.searchsorted(entries, within.rows * width + within.cols)
 
     def sums(self, values: FloatArray) -> FloatArray:
         """(n_patches,) sums over the cells of each patch."""
         return np.bincount(self.patch, weights=values, minlength=self.n_patches).astype(np.float64)
 
 
-def _pairs_in_patches(patch: IntArray) -> IntArray:
-    """(n_pairs, 2) ordered pairs of cells in one patch, a cell with itself included."""
-    order = np.argsort(patch, kind="stable")
-    grouped = patch[order]
-    pairs = [np.stack([order, order], axis=1)]
-    for shift in range(1, int(np.bincount(patch).max())):
-        same = grouped[shift:] == grouped[:-shift]
-        first, second = order[:-shift][same], order[shift:][same]
-        pairs += [np.stack([first, second], axis=1), np.stack([second, first], axis=1)]
-    return np.concatenate(pairs)
+def _entries(nodes: IntArray, corners: IntArray, n_dim: int) -> tuple[IntArray, IntArray]:
+    """Upper triangles of the matrices of all patches, one patch after the other."""
+    sizes = np.diff(corners)
+    first = np.concatenate([[0], np.cumsum((n_dim * sizes) * (n_dim * sizes + 1) // 2)])
+    rows, cols = np.empty(first[-1], dtype=np.int64), np.empty(first[-1], dtype=np.int64)
+    for size in np.unique(sizes):
+        chosen = np.flatnonzero(sizes == size)
+        own = nodes[corners[chosen][:, None] + np.arange(size)]
+        dofs = (own[:, :, None] * n_dim + np.arange(n_dim)).reshape(chosen.size, -1)
+        i, j = np.triu_indices(n_dim * size)
+        places = first[chosen][:, None] + np.arange(i.size)
+        rows[places], cols[places] = dofs[:, i], dofs[:, j]
+    return rows, cols
 
 
 class MeanDilatationEnergy(ElasticEnergy):
@@ -91,7 +101,8 @@ class MeanDilatationEnergy(ElasticEnergy):
     def evaluate(self, u: FloatArray, order: int, project_psd: bool = False) -> Evaluation:
         """Energy [Pa mm^2], gradient [Pa mm], Hessian [Pa]; see `EnergyTerm`."""
         F = self.kinematics.deformation(u)
-        J = np.linalg.det(F) * self.kinematics.f33
+        J = np.empty(F.shape[0])
+        volume_ratios(F, self.kinematics.f33, J)
         if not J.min() > 0.0:
             return Evaluation(np.inf)
         excess = self.patches.sums(self.weight * J) / self._patch_weight - 1.0
@@ -105,12 +116,19 @@ class MeanDilatationEnergy(ElasticEnergy):
 
     def _with_patches(self, hessian: Hessian, F: FloatArray, J: FloatArray) -> Hessian:
         """Add the products of volume gradients, a positive semi-definite matrix of rank one per patch."""
-        spatial = np.einsum("cai,cij->caj", self.kinematics.gradients, np.linalg.inv(F))
-        volume = ((self.weight * J)[:, None, None] * spatial).reshape(J.size, -1)
-        stiffness = (self._patch_kappa / self._patch_weight)[self.patches.patch[self.patches.pairs[:, 0]]]
-        first, second = volume[self.patches.pairs[:, 0]], volume[self.patches.pairs[:, 1]]
-        products = stiffness[:, None, None] * first[:, :, None] * second[:, None, :]
-        values = np.zeros(self.patches.pattern.rows.size)
-        np.add.at(values, self.patches.position, products[self.patches.upper])
+        patches = self.patches
+        values = np.zeros(patches.pattern.rows.size)
+        add_patch_products(
+            F,
+            self.kinematics.gradients,
+            self.weight * J,
+            self._patch_kappa / self._patch_weight,
+            patches.starts,
+            patches.order,
+            patches.local,
+            patches.corners,
+            patches.position,
+            values,
+        )
         values[self.patches.within] += hessian.values
         return Hessian(self.patches.pattern, values)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gyrify.energy import planar_kernels as kernels
-from gyrify.energy.collision import PairSum
+from gyrify.energy.collision import PairSum, vertex_and_ends
 from gyrify.energy.projection import project_all
 from gyrify.energy.term import FloatArray, IntArray
 
@@ -43,9 +43,9 @@ class PlanarContour:
         """See `gyrify.energy.collision.CollisionContour`."""
         return self._meeting(vertices - inflation, vertices + inflation)
 
-    def pair_array(self, pairs: IntArray) -> IntArray:
+    def coupled(self, pairs: IntArray) -> IntArray:
         """See `gyrify.energy.collision.CollisionContour`."""
-        return pairs
+        return vertex_and_ends(pairs, self.edges)
 
     def is_path_free(self, start: FloatArray, end: FloatArray) -> bool:
         """See `gyrify.energy.collision.CollisionContour`."""

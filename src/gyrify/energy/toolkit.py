@@ -5,7 +5,7 @@ from __future__ import annotations
 import ipctk
 import numpy as np
 
-from gyrify.energy.collision import PairSum
+from gyrify.energy.collision import PairSum, vertex_and_ends
 from gyrify.energy.term import FloatArray, IntArray
 
 # ipctk sums over threads; one thread makes the sum, and so the run, reproducible.
@@ -17,7 +17,7 @@ class ToolkitContour:
     """See `gyrify.energy.collision.CollisionContour`; arrays have the Fortran order that ipctk wants."""
 
     def __init__(self, reference: FloatArray, edges: IntArray, n_own: int | None) -> None:
-        self.n_own = n_own
+        self.n_own, self.edges = n_own, edges
         self.mesh = ipctk.CollisionMesh(
             np.asfortranarray(reference), np.asfortranarray(edges.astype(np.int32))
         )
@@ -31,10 +31,10 @@ class ToolkitContour:
         candidates.build(self.mesh, vertices, inflation)
         return candidates
 
-    def pair_array(self, pairs: ipctk.Candidates) -> IntArray:
+    def coupled(self, pairs: ipctk.Candidates) -> IntArray:
         """See `gyrify.energy.collision.CollisionContour`."""
         found = [(c.vertex_id, c.edge_id) for c in pairs.ev_candidates]
-        return np.array(found, dtype=np.int64).reshape(-1, 2)
+        return vertex_and_ends(np.array(found, dtype=np.int64).reshape(-1, 2), self.edges)
 
     def is_path_free(self, start: FloatArray, end: FloatArray) -> bool:
         """See `gyrify.energy.collision.CollisionContour`."""
@@ -45,6 +45,11 @@ class ToolkitContour:
         if pairs is not None:
             return float(pairs.compute_collision_free_stepsize(self.mesh, start, end))
         return float(ipctk.compute_collision_free_stepsize(self.mesh, start, end))
+
+    def share(self, collisions: ipctk.NormalCollisions) -> None:
+        """Weigh pairs with images, which are found twice."""
+        if self.n_own is not None:
+            share_pairs(collisions, self.n_own)
 
     def barrier(self, d_hat: float, stiffness: float) -> ToolkitBarrier:
         """See `gyrify.energy.collision.CollisionContour`."""
@@ -68,7 +73,7 @@ class ToolkitBarrier:
         value = float(self._barrier(collisions, mesh, vertices))
         if not np.isfinite(value) or order == 0:
             return PairSum(value)
-        gradient = self._barrier.gradient(collisions, mesh, vertices).reshape(-1, 2)
+        gradient = self._barrier.gradient(collisions, mesh, vertices).reshape(vertices.shape)
         if order == 1:
             return PairSum(value, gradient)
         method = ipctk.PSDProjectionMethod.CLAMP if project_psd else ipctk.PSDProjectionMethod.NONE
@@ -81,8 +86,7 @@ class ToolkitBarrier:
         collisions.use_area_weighting = True
         collisions.collision_set_type = ipctk.NormalCollisions.IMPROVED_MAX_APPROX
         collisions.build(pairs, self._contour.mesh, vertices, self._d_hat)
-        if self._contour.n_own is not None:
-            share_pairs(collisions, self._contour.n_own)
+        self._contour.share(collisions)
         return collisions
 
 

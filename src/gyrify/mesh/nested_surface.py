@@ -66,7 +66,7 @@ def nearest_frequency(edge: float) -> int:
     """Frequency of the icosphere whose mean edge on the unit sphere is nearest to a length, as a ratio."""
     wanted = np.sqrt(16.0 * np.pi / (20.0 * np.sqrt(3.0))) / edge
     tried = sorted({base * 2**n for base in BASES for n in range(12)})
-    return min(tried, key=lambda frequency: abs(np.log(frequency / wanted)))
+    return int(min(tried, key=lambda frequency: abs(np.log(frequency / wanted))))
 
 
 def periodic_sheet(n_x: int, n_y: int, n_halvings: int) -> NestedSurface:
@@ -86,8 +86,12 @@ def periodic_sheet(n_x: int, n_y: int, n_halvings: int) -> NestedSurface:
     i, j = (index.ravel() for index in np.meshgrid(np.arange(n_x), np.arange(n_y), indexing="ij"))
     corner = [((i + a) % n_x) * n_y + (j + b) % n_y for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
     rising = ((i + j) % 2 == 0)[:, None]
-    first = np.where(rising, np.stack([corner[k] for k in (0, 1, 2)], 1), np.stack([corner[k] for k in (0, 1, 3)], 1))
-    second = np.where(rising, np.stack([corner[k] for k in (0, 2, 3)], 1), np.stack([corner[k] for k in (1, 2, 3)], 1))
+    first = np.where(
+        rising, np.stack([corner[k] for k in (0, 1, 2)], 1), np.stack([corner[k] for k in (0, 1, 3)], 1)
+    )
+    second = np.where(
+        rising, np.stack([corner[k] for k in (0, 2, 3)], 1), np.stack([corner[k] for k in (1, 2, 3)], 1)
+    )
     places = np.stack([i / n_x, j / n_y], axis=1)
     triangles = np.stack([first, second], axis=1).reshape(-1, 3)
     return _halved(places, triangles, n_halvings, _on_the_sheet)
@@ -147,9 +151,7 @@ def _divided_icosahedron(n: int) -> tuple[FloatArray, IntArray]:
     points = _unit(np.einsum("sk,fkd->fsd", np.sin(weights * angle / n), corners[faces]).reshape(-1, 3))
     upwards = [(number[i, j], number[i + 1, j], number[i, j + 1]) for i in range(n) for j in range(n - i)]
     downwards = [
-        (number[i + 1, j], number[i + 1, j + 1], number[i, j + 1])
-        for i in range(n)
-        for j in range(n - i - 1)
+        (number[i + 1, j], number[i + 1, j + 1], number[i, j + 1]) for i in range(n) for j in range(n - i - 1)
     ]
     local = np.array(upwards + downwards)
     triangles = (local[None] + len(steps) * np.arange(len(faces))[:, None, None]).reshape(-1, 3)

@@ -113,7 +113,7 @@ def build_shells(
 
 
 def coarsening(
-    n_levels: int, thickness: FloatArray, edges: FloatArray, interface: int, share: float = 1.0 / 3.0
+    n_levels: int, thickness: FloatArray, edges: FloatArray, interface: int, share: float = 0.5
 ) -> tuple[int, ...]:
     """Level of each surface: finest from the interface outwards, coarser inwards as layers become thicker.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +11,12 @@ from numpy.typing import NDArray
 from gyrify.config import Config
 from gyrify.energy.term import FloatArray, IntArray
 from gyrify.mesh import GREY, Mesh
+from gyrify.mesh.shapes import shape_of
 from gyrify.physics.growth import Growth
 from gyrify.physics.materials import Material, material_named
+
+# Width of the sigmoid profile over T where none is given.
+TRANSITION: Final = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,14 +49,37 @@ class Places:
 def growth_of(config: Config, places: Places) -> Growth:
     """Growth of the points of a body."""
     growth, grey = config.growth, places.grey
+    if growth.profile == "sigmoid":
+        share = cortical_share(config, places)
+        rate = growth.rate_white + (growth.rate - growth.rate_white) * share
+        tangential = np.full(grey.shape, growth.is_tangential)
+        rate_across: FloatArray | float = growth.rate_white * (1.0 - share)
+    else:
+        rate, tangential = np.where(grey, growth.rate, growth.rate_white), grey & growth.is_tangential
+        rate_across = 0.0
     return Growth(
-        rate=np.where(grey, growth.rate, growth.rate_white),
-        tangential=grey & (growth.law == "tangential"),
+        rate=rate,
+        tangential=tangential,
         across=places.across,
         law=growth.stretch,
         out_of_plane_rule=growth.out_of_plane,
         exponent=growth.out_of_plane_exponent,
+        rate_across=rate_across,
     )
+
+
+def cortical_share(config: Config, places: Places) -> FloatArray:
+    """(n,) part m of the cortex' growth that a sigmoid profile gives to each point, 0 to 1.
+
+    m = 1 / (1 + exp((d - T) / w)) with the depth d below the contour or outer surface in the reference state
+    (Tallinen et al. 2016, Nature Physics 12, 588, with w = T / 10).
+    """
+    T = config.geometry.cortical_thickness
+    width = config.growth.transition or TRANSITION * T
+    white = shape_of(config.geometry).wall[0]
+    below = T * (1.0 - np.maximum(places.depth - 1.0, 0.0)) + white * np.maximum(1.0 - places.depth, 0.0)
+    # beyond 700 widths exp overflows, and the share is 0 anyway
+    return np.asarray(1.0 / (1.0 + np.exp(np.minimum((below - T) / width, 700.0))))
 
 
 def parameters_of(config: Config, places: Places) -> FloatArray:

@@ -6,12 +6,14 @@ from collections.abc import Iterable
 from typing import Final
 
 from gyrify.config import Config
+from gyrify.config.space_checks import edge_length
 from gyrify.errors import ConfigError, MeshError
 from gyrify.mesh import Mesh
 from gyrify.mesh.layered import layered_mesh
 from gyrify.mesh.layered_grid import Layers
 from gyrify.mesh.quality import SliverError
-from gyrify.mesh.shapes import shape_of
+from gyrify.mesh.shapes import SolidShape, shape_of
+from gyrify.mesh.shelled import ShellLayers, shell_mesh
 
 _FEWEST_COLUMNS, _MOST_COLUMNS = 24, 4096
 _MOST_LAYERS: Final = 64
@@ -31,11 +33,15 @@ def build_mesh(config: Config) -> Mesh:
     try:
         return _built(config)
     except SliverError as fault:
+        if config.geometry.n_dim == 3:
+            raise
         raise SliverError(fault.message, _advice(config, fault.advice)) from None
 
 
 def _built(config: Config) -> Mesh:
-    geometry, mesh = config.geometry, config.mesh
+    mesh, shape = config.mesh, shape_of(config.geometry)
+    if isinstance(shape, SolidShape):
+        return shell_mesh(shape, _shell_layers(config))
     layers = Layers(
         n_around=mesh.n_around,
         n_layers=mesh.n_layers,
@@ -48,7 +54,21 @@ def _built(config: Config) -> Mesh:
         refine=mesh.refine,
         refine_cortex=mesh.refine_cortex,
     )
-    return layered_mesh(shape_of(geometry), layers)
+    return layered_mesh(shape, layers)
+
+
+def _shell_layers(config: Config) -> ShellLayers:
+    mesh = config.mesh
+    return ShellLayers(
+        edge_length=edge_length(config),
+        n_layers=mesh.n_layers,
+        n_cortex_layers=mesh.n_cortex_layers,
+        grading=mesh.grading,
+        node_jitter=mesh.node_jitter,
+        seed=config.seed,
+        refine=mesh.refine,
+        refine_cortex=mesh.refine_cortex,
+    )
 
 
 def _advice(config: Config, direction: str) -> str:

@@ -14,6 +14,7 @@ from gyrify.energy.contact_libraries import LibraryName
 from gyrify.energy.term import FloatArray, IntArray
 from gyrify.energy.total import TotalEnergy
 from gyrify.energy.unknowns import Unknowns
+from gyrify.errors import SolveError
 from gyrify.mesh.symmetry import representatives
 from gyrify.model.internal import INTERNAL
 from gyrify.model.meshing import build_mesh
@@ -33,6 +34,8 @@ AUTO_BARRIER = 0.1
 # Distance over the shortest edge within which points enter the sparsity pattern together: far enough that few
 # new symbolic analyses are needed, near enough that the factor stays sparse.
 REACH = 3.0
+# The same in space over the smallest height of a triangle: near it, all neighbours are within reach.
+REACH_IN_SPACE = 0.6
 # Edge of the contour over the shortest undeformed one below which it has collapsed; regular folds stay above.
 # Between the integration points of a quadratic cell no elastic energy resists that, so that contact has to:
 # were its distance to follow the edge further, both would halve until no increment is left.
@@ -73,6 +76,7 @@ class Slice(Tissue):
             "surface",
             "lumped_area",
             "free",
+            "supported",
             "free_mass",
             "unknowns",
         )
@@ -82,14 +86,32 @@ class Slice(Tissue):
     @cached_property
     def surface(self) -> ContactSurface:
         """Outer contour, for contact."""
-        mesh = self.mesh
-        return ContactSurface(mesh.points, mesh.contour, mesh.is_closed, mesh.period, self.contact_library)
+        mesh, library = self.mesh, self.contact_library
+        line = (mesh.points, mesh.contour, mesh.is_closed, mesh.period, library)
+        try:
+            return ContactSurface(*line, mesh.faces, mesh.period_y)
+        except ImportError as missing:
+            raise SolveError(
+                "Contact in space needs the IPC Toolkit (ipctk), which is not installed here.",
+                "Install it with pip install ipctk, or set contact.enabled = false to compare without.",
+            ) from missing
 
     @cached_property
     def free_mass(self) -> FloatArray:
-        """(n_free,) lumped reference area of each free degree of freedom [mm^2]; all of it for F33."""
+        """(n_supported,) lumped reference area of what moves in `system` [mm^2]; all of it for F33."""
+        return np.asarray(self._mass[self.supported])
+
+    @property
+    def _mass(self) -> FloatArray:
+        """(n_dofs,) lumped reference area of each degree of freedom [mm^2]."""
         area = np.where(self.lumped_area > 0.0, self.lumped_area, self.lumped_area.sum())
-        return np.asarray(np.repeat(area, self.mesh.n_dim)[self.free])
+        return np.repeat(area, self.mesh.n_dim)
+
+    @property
+    def _moving(self) -> IntArray:
+        """Degrees of freedom that increments move: drag holds a free body by itself."""
+        is_dragged = self.config.dissipation.kind == "drag" and not self.is_conservative
+        return self.free if is_dragged else self.supported
 
     @cached_property
     def unknowns(self) -> Unknowns | None:
@@ -101,14 +123,15 @@ class Slice(Tissue):
         source, sign = representatives(mirrors, self.mesh.n_points, n_dim)
         own = np.arange(source.size, n_rows * n_dim)  # the axial unknown
         return Unknowns.of(
-            np.concatenate([source, own]), np.concatenate([sign, np.ones(own.size)]), self.free
+            np.concatenate([source, own]), np.concatenate([sign, np.ones(own.size)]), self._moving
         )
 
     @property
     def stepping(self) -> Stepping:
         """Increments and tolerance in physical units."""
         solver, E = self.config.solver, self.config.material.young_modulus
-        criterion = Criterion(solver.tolerance * E * self.mean_cortical_edge, solver.max_newton)
+        size = self.mean_cortical_edge ** (self.mesh.n_dim - 1)
+        criterion = Criterion(solver.tolerance * E * size, solver.max_newton)
         return Stepping(solver.increments, solver.min_increment, criterion)
 
     @property
@@ -123,9 +146,9 @@ class Slice(Tissue):
         if self.config.solver.regularisation != "shift":
             return None
         if self.unknowns is None:
-            return self.free_mass
+            return np.asarray(self._mass[self._moving])
         mass = np.zeros(self.unknowns.number.size)
-        mass[self.free] = self.free_mass
+        mass[self._moving] = self._mass[self._moving]
         return self.unknowns.gather_mass(mass)
 
     @property
@@ -209,23 +232,27 @@ class Slice(Tissue):
         step = GrowthStep(self, start.u, start_fraction, fraction, start.internal)
         return TotalEnergy([term for _, term in terms_of(step)])
 
-    def system(self, couplings: IntArray, unknowns: Unknowns | None = None) -> System:
-        """See `gyrify.solve.problem.Problem`; of all free degrees of freedom unless unknowns are given."""
-        pattern = self.pattern.pattern if self.patches is None else self.patches.pattern
-        solver, n_dofs = linear_solver(self.config.solver.linear_solver), int(np.prod(self.state_shape))
-        return System(self.free, n_dofs, self.mesh.n_dim, pattern, solver, couplings, unknowns)
+    def system(self, couplings: IntArray) -> System:
+        """See `gyrify.solve.problem.Problem`."""
+        return self._system(self.supported, couplings, None)
 
     def increment_system(self, couplings: IntArray) -> System:
         """See `gyrify.solve.problem.Problem`."""
-        return self.system(couplings, self.unknowns)
+        return self._system(self._moving, couplings, self.unknowns)
+
+    def _system(self, moving: IntArray, couplings: IntArray, unknowns: Unknowns | None) -> System:
+        pattern = self.pattern.pattern if self.patches is None else self.patches.pattern
+        solver, n_dofs = linear_solver(self.config.solver.linear_solver), int(np.prod(self.state_shape))
+        return System(moving, n_dofs, self.mesh.n_dim, pattern, solver, couplings, unknowns)
 
     def candidates(self, u: FloatArray) -> IntArray:
         """Point pairs of the contour that contact may couple before long."""
-        return self.surface.couplings(u, REACH * self._spacing(u))
+        reach = REACH if self.mesh.n_dim == 2 else REACH_IN_SPACE
+        return self.surface.couplings(u, reach * self._spacing(u))
 
     def _spacing(self, u: FloatArray) -> float:
-        """Length of the shortest edge of the contour, or that at which it has collapsed [mm]."""
-        return max(self.surface.shortest_edge(u), COLLAPSED * self.surface.shortest_edge(np.zeros_like(u)))
+        """Shortest edge of the contour (height of a triangle in space), but of none that collapsed [mm]."""
+        return max(self.surface.spacing(u), COLLAPSED * self.surface.spacing(np.zeros_like(u)))
 
     def is_path_admissible(self, u: FloatArray, u_end: FloatArray) -> bool:
         """See `gyrify.solve.problem.Problem`."""

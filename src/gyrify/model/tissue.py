@@ -16,6 +16,7 @@ from gyrify.errors import InvertedCellError
 from gyrify.mesh import GREY, Mesh
 from gyrify.model.body import Places, growth_of, material_of, parameters_of
 from gyrify.model.meshing import build_mesh
+from gyrify.model.rigid import isostatic_supports
 
 
 class Tissue:
@@ -108,11 +109,29 @@ class Tissue:
         area[: self.mesh.n_points] = self.simplices.lumped_volumes
         return area
 
+    @property
+    def is_clamped(self) -> bool:
+        """Whether a part of the body is held."""
+        return self.mesh.clamped.size > 0 and self.config.boundary.clamp != "none"
+
+    @cached_property
+    def supported(self) -> IntArray:
+        """Free degrees of freedom without as many as hold the body where nothing else does.
+
+        Held there, a body cannot move as a whole, and is not strained: in equilibrium nothing pulls at a
+        support, since the forces of the tissue balance. The stiffness keeps its inertia but for the rigid
+        motions, whose curvature is zero.
+        """
+        if self.is_clamped:
+            return self.free
+        return np.setdiff1d(self.free, isostatic_supports(self.mesh.points), assume_unique=True)
+
     @cached_property
     def free(self) -> IntArray:
         """Free degrees of freedom."""
         is_free = np.ones(self.state_shape, dtype=bool)
-        is_free[self.mesh.clamped] = False
+        if self.is_clamped:
+            is_free[self.mesh.clamped] = False
         if self.has_axial_unknown:
             is_free[-1] = (True, False)
         return np.flatnonzero(is_free)
@@ -120,7 +139,11 @@ class Tissue:
     @cached_property
     def mean_cortical_edge(self) -> float:
         """Mean length of the edges of grey cells [mm]."""
-        corners = self.mesh.cell_points[self.mesh.region == GREY, :3]
+        n_dim = self.mesh.n_dim
+        corners = self.mesh.cell_points[self.mesh.region == GREY, : n_dim + 1]
+        if n_dim == 3:
+            i, j = np.triu_indices(4, 1)
+            return float(np.linalg.norm(corners[:, i] - corners[:, j], axis=2).mean())
         return float(np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).mean())
 
     def kinematics(self, time: float) -> ElasticKinematics:

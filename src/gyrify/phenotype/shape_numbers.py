@@ -37,7 +37,7 @@ def grown_thickness(config: Config) -> float:
         T (1 + G Δt) or T exp(G Δt); T where growth is tangential.
     """
     growth, thickness = config.growth, config.geometry.cortical_thickness
-    if growth.law == "tangential":
+    if growth.is_tangential:
         return thickness
     increase = growth.rate * growth.duration
     return thickness * (math.exp(increase) if growth.stretch == "exponential" else 1.0 + increase)

@@ -35,17 +35,24 @@ def growth_stretch(rate: FloatArray | float, time: float, stretch: Stretch) -> F
     return np.exp(strain) if stretch == "exponential" else 1.0 + strain
 
 
-def growth_tensor(stretch: FloatArray, tangential: NDArray[np.bool_], across: FloatArray) -> FloatArray:
-    """In-plane growth tensor of each cell.
+def growth_tensor(
+    stretch: FloatArray,
+    tangential: NDArray[np.bool_],
+    across: FloatArray,
+    stretch_across: FloatArray | float = 1.0,
+) -> FloatArray:
+    """Growth tensor of each cell, in the plane for a planar body.
 
     Parameters
     ----------
     stretch : (n_cells,) float array
         Growth stretch lambda_g.
     tangential : (n_cells,) bool array
-        Where growth is tangential, F_g = lambda_g (I - N N) + N N; elsewhere F_g = lambda_g I.
+        Where growth is tangential, F_g = lambda_g (I - N N) + lambda_n N N; elsewhere F_g = lambda_g I.
     across : (n_cells, n_dim) float array
         Unit reference direction N across the layers.
+    stretch_across : (n_cells,) float array or float
+        lambda_n: 1 where tissue does not grow across the layers.
 
     Returns
     -------
@@ -56,7 +63,7 @@ def growth_tensor(stretch: FloatArray, tangential: NDArray[np.bool_], across: Fl
     tensor = stretch[:, None, None] * np.eye(n_dim)
     if not tangential.any():
         return tensor
-    normal = np.where(tangential, 1.0 - stretch, 0.0)
+    normal = np.where(tangential, stretch_across - stretch, 0.0)
     return tensor + normal[:, None, None] * across[:, :, None] * across[:, None, :]
 
 
@@ -92,7 +99,7 @@ class Growth:
     rate : (n,) float array
         Growth rate [1/time].
     tangential : (n,) bool array
-        Where growth is tangential; elsewhere it is isotropic.
+        Where growth along the layers and across them differ; elsewhere it is isotropic.
     across : (n, n_dim) float array
         Unit reference direction across the layers.
     law : {"linear", "exponential"}
@@ -101,6 +108,8 @@ class Growth:
         As of `out_of_plane_growth`; of no meaning in space.
     exponent : float
         s of `out_of_plane_growth`.
+    rate_across : (n,) float array or float
+        Growth rate across the layers where growth is tangential [1/time].
     """
 
     rate: FloatArray
@@ -109,6 +118,7 @@ class Growth:
     law: Stretch = "linear"
     out_of_plane_rule: OutOfPlane = "none"
     exponent: float = 1.0
+    rate_across: FloatArray | float = 0.0
 
     @property
     def is_isotropic(self) -> bool:
@@ -119,13 +129,18 @@ class Growth:
         """(n,) growth stretch lambda_g at a growth time."""
         return growth_stretch(self.rate, time, self.law)
 
+    def stretch_across(self, time: float) -> FloatArray:
+        """(n,) growth stretch across the layers where growth is tangential."""
+        return growth_stretch(np.broadcast_to(self.rate_across, self.rate.shape), time, self.law)
+
     def tensor(self, time: float) -> FloatArray:
         """(n, n_dim, n_dim) growth tensor F_g, in the plane for a planar body."""
-        return growth_tensor(self.stretch(time), self.tangential, self.across)
+        return growth_tensor(self.stretch(time), self.tangential, self.across, self.stretch_across(time))
 
     def inverse(self, time: float) -> FloatArray:
         """(n, n_dim, n_dim) its inverse: the same form with 1 / lambda_g."""
-        return growth_tensor(1.0 / self.stretch(time), self.tangential, self.across)
+        across = 1.0 / self.stretch_across(time)
+        return growth_tensor(1.0 / self.stretch(time), self.tangential, self.across, across)
 
     def out_of_plane(self, time: float) -> FloatArray:
         """(n,) entry F_g,33 of a planar body; ones in space."""
@@ -137,6 +152,6 @@ class Growth:
     def volume(self, time: float) -> FloatArray:
         """(n,) J_g = det F_g, the 33 entry included."""
         stretch = self.stretch(time)
-        across = np.where(self.tangential, 1.0, stretch)
+        across = np.where(self.tangential, self.stretch_across(time), stretch)
         in_plane = stretch ** (self.across.shape[1] - 1) * across
         return np.asarray(in_plane * self.out_of_plane(time))

@@ -6,25 +6,52 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from gyrify.mesh.shapes.ellipse import Ellipse
+from gyrify.mesh.shapes.ellipsoid import Ellipsoid
+from gyrify.mesh.shapes.patch import Patch
 from gyrify.mesh.shapes.shape import Shape
+from gyrify.mesh.shapes.solid import SolidShape
 from gyrify.mesh.shapes.strip import PeriodicStrip
 
-__all__ = ["SHAPES", "Ellipse", "PeriodicStrip", "Shape", "shape_of"]
+__all__ = [
+    "SHAPES",
+    "Ellipse",
+    "Ellipsoid",
+    "Patch",
+    "PeriodicStrip",
+    "Shape",
+    "SolidShape",
+    "shape_of",
+]
 
 
 def _ellipse(geometry: Any) -> Ellipse:
-    return Ellipse(geometry.semi_axes, geometry.hole_fraction, geometry.cortical_thickness)
+    return Ellipse(geometry.outer_axes, geometry.hole_fraction, geometry.cortical_thickness)
 
 
 def _strip(geometry: Any) -> PeriodicStrip:
     return PeriodicStrip(geometry.length, geometry.depth, geometry.cortical_thickness)
 
 
+def _ellipsoid(geometry: Any) -> Ellipsoid:
+    return Ellipsoid(geometry.outer_axes, geometry.hole_fraction, geometry.cortical_thickness)
+
+
+def _patch(geometry: Any) -> Patch:
+    return Patch(geometry.length, geometry.width, geometry.depth, geometry.cortical_thickness)
+
+
 # By the value of ``geometry.shape``: what makes the shape of that section of a configuration.
-SHAPES: Final[dict[str, Callable[[Any], Shape]]] = {"ellipse": _ellipse, "circle": _ellipse, "strip": _strip}
+SHAPES: Final[dict[str, Callable[[Any], Shape | SolidShape]]] = {
+    "ellipse": _ellipse,
+    "circle": _ellipse,
+    "strip": _strip,
+    "sphere": _ellipsoid,
+    "ellipsoid": _ellipsoid,
+    "patch": _patch,
+}
 
 
-def shape_of(geometry: Any) -> Shape:
+def shape_of(geometry: Any) -> Shape | SolidShape:
     """The shape of a section ``geometry`` of a configuration.
 
     Raises

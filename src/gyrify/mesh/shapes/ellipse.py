@@ -35,6 +35,7 @@ class Ellipse:
     semi_axes: tuple[float, float]
     hole_fraction: float
     cortical_thickness: float
+    n_dim: ClassVar[int] = 2
     is_closed: ClassVar[bool] = True
     period: ClassVar[None] = None
     n_mirrors: ClassVar[int] = 2

@@ -34,6 +34,7 @@ class Ellipsoid:
     semi_axes: tuple[float, float, float]
     hole_fraction: float
     cortical_thickness: float
+    n_dim: ClassVar[int] = 3
     periods: ClassVar[None] = None
 
     def __post_init__(self) -> None:

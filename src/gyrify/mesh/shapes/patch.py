@@ -38,6 +38,7 @@ class Patch:
     width: float
     height: float
     cortical_thickness: float
+    n_dim: ClassVar[int] = 3
     is_solid: ClassVar[bool] = False
 
     def __post_init__(self) -> None:

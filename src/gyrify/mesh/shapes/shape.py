@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,8 @@ class Shape(Protocol):
 
     Attributes
     ----------
+    n_dim : int
+        Dimension of the space it lies in: 2.
     is_closed : bool
         Whether the layers run around a hole; otherwise along one period towards +x.
     period : float or None
@@ -38,6 +40,8 @@ class Shape(Protocol):
     narrowest_wall : float
         Smallest distance from the contour to the clamped side [mm].
     """
+
+    n_dim: ClassVar[int]
 
     @property
     def is_closed(self) -> bool: ...

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import ClassVar, Protocol, runtime_checkable
 
 from gyrify.mesh.nested_surface import NestedSurface
 from gyrify.mesh.shapes.shape import FloatArray
 
 
+@runtime_checkable
 class SolidShape(Protocol):
     """A body in space with a cortex under its outer surface.
 
@@ -16,6 +17,8 @@ class SolidShape(Protocol):
 
     Attributes
     ----------
+    n_dim : int
+        Dimension of the space it lies in: 3.
     is_solid : bool
         Whether depth 0 is a point in the middle, not a surface.
     periods : (float, float) or None
@@ -25,6 +28,8 @@ class SolidShape(Protocol):
     narrowest_wall : float
         Smallest distance from the outer surface to the other end of the wall [mm].
     """
+
+    n_dim: ClassVar[int]
 
     @property
     def is_solid(self) -> bool: ...

@@ -37,6 +37,7 @@ class PeriodicStrip:
     length: float
     height: float
     cortical_thickness: float
+    n_dim: ClassVar[int] = 2
     is_closed: ClassVar[bool] = False
     n_mirrors: ClassVar[int] = 1
 

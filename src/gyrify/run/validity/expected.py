@@ -23,7 +23,7 @@ _STILL: Final = 1e3
 # Depth of white matter over a wavelength from which the clamped floor of a strip is not felt (1 % in load).
 _DEEP: Final = 0.5
 # What makes the theory of another configuration another one.
-_SECTIONS: Final = ("geometry", "material", "growth")
+_SECTIONS: Final = ("geometry", "material", "growth", "boundary")
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ class _Held:
 
 
 @lru_cache(maxsize=256)
-def _expected(_geometry: str, _material: str, _growth: str, held: _Held) -> Expected:
+def _expected(_geometry: str, _material: str, _growth: str, _boundary: str, held: _Held) -> Expected:
     config = held.config
     if config.growth.rate == 0.0:
         return Expected("annulus" if config.geometry.shape != "strip" else "film on a half-space")
@@ -116,6 +116,16 @@ def require_covered(config: Config) -> None:
         raise ConfigError(
             f'the theory has no material.law = "{config.material.law}".',
             'Set material.law = "neo_hookean" to compare with it.',
+        )
+    if config.growth.profile != "sharp":
+        raise ConfigError(
+            f'the theory has no growth.profile = "{config.growth.profile}".',
+            'Set growth.profile = "sharp" to compare with it.',
+        )
+    if config.boundary.clamp != "hole" and config.geometry.n_dim == 2:
+        raise ConfigError(
+            f'the theory has no boundary.clamp = "{config.boundary.clamp}".',
+            'Set boundary.clamp = "hole" to compare with it.',
         )
 
 
@@ -147,7 +157,7 @@ def annulus_of(config: Config) -> Annulus:
         out_of_plane_exponent=growth.out_of_plane_exponent,
         stretch=growth.stretch,
         energy_per=growth.energy_per,
-        law=growth.law,
+        law="tangential" if growth.is_tangential else "isotropic",
         degree=DEGREE,
     )
 
@@ -179,10 +189,10 @@ def _ring(config: Config) -> Expected:
 
 
 _LOADINGS: Final = {
-    ("isotropic", "blocked"): "isotropic",
-    ("isotropic", "none"): "plane",
-    ("tangential", "blocked"): "tangential",
-    ("tangential", "none"): "uniaxial",
+    (False, "blocked"): "isotropic",
+    (False, "none"): "plane",
+    (True, "blocked"): "tangential",
+    (True, "none"): "uniaxial",
 }
 
 
@@ -199,13 +209,13 @@ def bilayer_of(config: Config) -> Bilayer | str:
         return "The theory of a strip has no growth.out_of_plane_exponent other than 1."
     if growth.stretch == "exponential" and not still:
         return 'The theory of a strip has no growth.stretch = "exponential" while white matter grows too.'
-    if growth.law == "tangential" and not still:
+    if growth.is_tangential and not still:
         return 'The theory of a strip has no growth.law = "tangential" while white matter grows too.'
     return Bilayer(
         stiffness_ratio=material.stiffness_ratio,
         poisson_ratio=material.poisson_ratio,
         poisson_ratio_substrate=material.poisson_ratio_white,
-        loading=_LOADINGS[growth.law, growth.out_of_plane],  # type: ignore[arg-type]
+        loading=_LOADINGS[growth.is_tangential, growth.out_of_plane],  # type: ignore[arg-type]
         growth_ratio=np.inf if still else growth.ratio,
         energy_per=growth.energy_per,
     )

@@ -108,7 +108,7 @@ def contour_spacing(config: Config) -> float:
     n_points: float = config.mesh.n_around * 2.0 ** (config.mesh.refine + config.mesh.refine_cortex)
     if geometry.shape == "strip":
         return geometry.length / n_points
-    a, b = geometry.semi_axes
+    a, b = geometry.outer_axes
     return math.pi * (3 * (a + b) - math.sqrt((3 * a + b) * (a + 3 * b))) / n_points
 
 

@@ -1,0 +1,188 @@
+"""The sections that say what the body is and how it is divided; units: mm."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Final, Literal
+
+from pydantic import Field
+
+from gyrify.config.base import Section, setting
+from gyrify.config.registered import Registered
+
+PAPER: Final = "Wang 2019"
+# Of the standard slice: area inside its contour [mm²] and thickness of its cortex [mm].
+STANDARD_AREA: Final = 4069.0
+STANDARD_THICKNESS: Final = 1.5
+
+
+Shape = Annotated[
+    str,
+    Registered(
+        ("ellipse", "circle", "strip", "sphere", "ellipsoid", "patch"),
+        "gyrify.mesh.shapes",
+        lambda module: module.SHAPES,
+    ),
+]
+# Shapes in space; what lies in the plane has no say in them, and they none in it.
+IN_SPACE: Final = frozenset({"sphere", "ellipsoid", "patch"})
+PERIODIC: Final = frozenset({"strip", "patch"})
+Axis = Annotated[float, Field(gt=0, le=1e5)]
+
+
+class Geometry(Section):
+    """The body: in the plane a hollow ellipse or circle, or a strip that is periodic in x and clamped below;
+    in space a sphere or an ellipsoid, solid or hollow, or a patch, periodic in x and y and clamped below."""
+
+    shape: Shape = setting("ellipse", "Shape of the body.", source=f"{PAPER}, Fig. 1")
+    area: float = setting(
+        STANDARD_AREA,
+        "Area inside the outer contour, hole included; ellipse and circle only.",
+        unit="mm²",
+        source=f"{PAPER}, Fig. 1 (40.69 cm²)",
+        gt=0,
+        le=1e10,
+    )
+    aspect_ratio: float = setting(
+        1.2,
+        "Long over short axis of the ellipse; ignored by other shapes.",
+        source=f"{PAPER}, Fig. 1",
+        ge=1,
+        le=3,
+    )
+    hole_fraction: float = setting(
+        0.5,
+        "Axes of the hole over those of the contour or surface, at least 0.1; in space also 0, a solid body. "
+        "Ignored by strip and patch.",
+        source=f"{PAPER}, Fig. 1",
+        ge=0,
+        le=0.9,
+    )
+    cortical_thickness: float = setting(
+        STANDARD_THICKNESS,
+        "Initial thickness T of the cortex, less than 0.95 of the narrowest wall.",
+        unit="mm",
+        source=f"{PAPER}, Mathematical Model",
+        gt=0,
+    )
+    length: float = setting(
+        40.0, "Period of the strip or the patch in x; ignored by other shapes.", unit="mm", gt=0, le=1e5
+    )
+    depth: float = setting(
+        18.0,
+        "Depth of the strip or the patch, cortex included (default: the mean wall of the standard slice).",
+        unit="mm",
+        gt=0,
+        le=1e5,
+    )
+    width: float = setting(40.0, "Period of the patch in y.", unit="mm", gt=0, le=1e5)
+    semi_axes: tuple[Axis, Axis, Axis] = setting(
+        (39.4, 32.9, 32.9),
+        "Semi-axes of the ellipsoid along x, y and z; a sphere takes the first as its radius.",
+        unit="mm",
+        strict=False,
+    )
+
+    @property
+    def n_dim(self) -> int:
+        """Dimension of the space that the body lies in."""
+        return 3 if self.shape in IN_SPACE else 2
+
+    @property
+    def outer_axes(self) -> tuple[float, ...]:
+        """Semi-axes of the outer contour (a, b) or surface (a, b, c) of a body that is not periodic [mm]."""
+        if self.shape in IN_SPACE:
+            return (self.semi_axes[0],) * 3 if self.shape == "sphere" else self.semi_axes
+        ratio = self.aspect_ratio if self.shape == "ellipse" else 1.0
+        minor = math.sqrt(self.area / (math.pi * ratio))
+        return ratio * minor, minor
+
+    @property
+    def mean_radius(self) -> float:
+        """Mean radius R = √(ab), or ∛(abc) in space, of a body that is not periodic [mm]."""
+        if self.shape in IN_SPACE:
+            return math.cbrt(math.prod(self.outer_axes))
+        return math.sqrt(self.area / math.pi)
+
+    @property
+    def drag_length(self) -> float:
+        """Length R of the drag number: the mean radius, or the depth of a strip or a patch [mm]."""
+        return self.depth if self.shape in PERIODIC else self.mean_radius
+
+    @property
+    def scale(self) -> float:
+        """Size of the body over that of the standard slice [-]: what lengths of measuring scale with.
+
+        Mean radii. The folds of a strip or a patch know no length but the thickness of its cortex: its depth
+        and its periods stand for a body without end.
+        """
+        if self.shape in PERIODIC:
+            return self.cortical_thickness / STANDARD_THICKNESS
+        if self.shape in IN_SPACE:
+            return self.mean_radius / math.sqrt(STANDARD_AREA / math.pi)
+        return math.sqrt(self.area) / math.sqrt(STANDARD_AREA)
+
+    @property
+    def narrowest_wall(self) -> float:
+        """Smallest distance from the contour or outer surface to the other end of the wall [mm]."""
+        if self.shape in PERIODIC:
+            return self.depth
+        return min(self.outer_axes) * (1.0 - self.hole_fraction)
+
+
+class MeshSettings(Section):
+    """How the slice is divided into cells."""
+
+    edge_length: float = setting(
+        0.0,
+        "In space, edge of the triangles on the outer surface; 0: one and a half times T.",
+        unit="mm",
+        ge=0,
+        le=1e5,
+    )
+    n_around: int = setting(
+        216,
+        "Points on the outer contour (along a period of the strip); not used in space.",
+        source=f"{PAPER}, Results",
+        ge=24,
+        le=4096,
+    )
+    n_layers: int = setting(
+        17,
+        "Layers from the clamped boundary (or the middle) to the outer contour or surface.",
+        source=f"{PAPER}, Results (7344 triangles / 216 / 2)",
+        ge=3,
+        le=512,
+    )
+    n_cortex_layers: int = setting(
+        6,
+        "Layers in the cortex, fewer than n_layers.",
+        source=f"{PAPER}, Results (at least six)",
+        ge=2,
+        le=511,
+    )
+    grading: Literal["geometric", "uniform"] = setting(
+        "geometric", "White layers: geometric (the first as thick as a cortical one) or uniform."
+    )
+    split: Literal["alternating", "one", "random", "symmetric"] = setting(
+        "alternating",
+        "How each quadrilateral is cut into two triangles; symmetric: the mesh and the folds are their own "
+        "mirror image.",
+    )
+    node_jitter: float = setting(
+        1e-3,
+        "Seeded random shift of the points, as a fraction of the local layer (mirrored: symmetric split).",
+        ge=0,
+        le=0.1,
+    )
+    element: Literal["linear", "quadratic", "mean_dilatation"] = setting(
+        "linear", "Finite element.", source=f"{PAPER}, Results (3-node triangles)"
+    )
+    inversion_resistance: float = setting(
+        0.0,
+        "Stiffness over E_G that keeps quadratic cells from inverting beside integration points; 0: none.",
+        ge=0,
+        le=10,
+    )
+    refine: int = setting(0, "Times the whole mesh is refined by halving.", ge=0, le=4)
+    refine_cortex: int = setting(0, "Times the cortex alone is refined by halving.", ge=0, le=4)

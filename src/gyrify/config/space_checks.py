@@ -1,0 +1,108 @@
+"""Conditions on what lies in space, and on what has a meaning there or in the plane alone."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+from gyrify.config.words import show
+
+if TYPE_CHECKING:
+    from gyrify.config.settings import Config
+
+_SMALLEST_HOLE: Final = 0.1
+# Edge on an outer surface over T, where none is given.
+EDGE: Final = 1.5
+
+
+def edge_length(config: Config) -> float:
+    """Edge on the outer surface of a body in space, before refinement [mm]."""
+    return config.mesh.edge_length or EDGE * config.geometry.cortical_thickness
+
+
+def n_cells(config: Config) -> float:
+    """About how many tetrahedra a body in space has at most: three to a prism."""
+    geometry, mesh = config.geometry, config.mesh
+    if geometry.shape == "patch":
+        area = geometry.length * geometry.width
+    else:
+        area = 4.0 * math.pi * geometry.mean_radius**2
+    faces = area / (math.sqrt(3.0) / 4.0 * edge_length(config) ** 2)
+    return 3.0 * faces * mesh.n_layers * 8.0 ** (mesh.refine + mesh.refine_cortex)
+
+
+def hole(config: Config) -> str:
+    """A hole in the plane has a size; in space there may be none."""
+    geometry = config.geometry
+    if geometry.shape in ("strip", "patch") or geometry.hole_fraction >= _SMALLEST_HOLE:
+        return ""
+    if geometry.n_dim == 3 and geometry.hole_fraction == 0.0:
+        return ""
+    other = " or 0, a solid body" if geometry.n_dim == 3 else ""
+    return (
+        f"geometry.hole_fraction = {geometry.hole_fraction!r} is not allowed with geometry.shape = "
+        f'"{geometry.shape}": it must be from 0.1 to 0.9{other}. Try 0.1.'
+    )
+
+
+def meaning(config: Config) -> str:
+    """What has no meaning for a body must be as it is by default."""
+    mesh, growth = config.mesh, config.growth
+    given: dict[str, tuple[object, object]] = {"mesh.edge_length": (mesh.edge_length, 0.0)}
+    where = "in the plane, where mesh.n_around counts"
+    if config.geometry.n_dim == 3:
+        where = "in space"
+        given = {
+            "mesh.split": (mesh.split, "alternating"),
+            "mesh.inversion_resistance": (mesh.inversion_resistance, 0.0),
+            "growth.out_of_plane": (growth.out_of_plane, "blocked"),
+            "growth.out_of_plane_exponent": (growth.out_of_plane_exponent, 1.0),
+        }
+    for key, (value, default) in given.items():
+        if value != default:
+            return (
+                f"{key} = {show(value)} is not allowed {where}: it has no meaning there. "
+                f"Try {key} = {show(default)}, the default."
+            )
+    return ""
+
+
+def built(config: Config) -> str:
+    """What is built in the plane alone is refused in space."""
+    if config.geometry.n_dim == 2:
+        return ""
+    if config.mesh.element == "quadratic":
+        return (
+            'mesh.element = "quadratic" is not allowed in space: there are no such tetrahedra yet. '
+            'Try mesh.element = "mean_dilatation" or "linear".'
+        )
+    if config.stability.follow_branch:
+        return (
+            "stability.follow_branch = true is not allowed in space yet. Try stability.follow_branch = false."
+        )
+    return ""
+
+
+def transition(config: Config) -> str:
+    """A width belongs to a sigmoid profile."""
+    growth = config.growth
+    if growth.profile == "sigmoid" or growth.transition == 0.0:
+        return ""
+    return (
+        f'growth.transition = {growth.transition:g} is not allowed with growth.profile = "sharp": a step has '
+        'no width. Try growth.profile = "sigmoid", or growth.transition = 0.'
+    )
+
+
+def clamp(config: Config) -> str:
+    """Periodic bodies are held below."""
+    if config.boundary.clamp == "hole" or config.geometry.shape not in ("strip", "patch"):
+        return ""
+    return (
+        f'boundary.clamp = "{config.boundary.clamp}" is not allowed with geometry.shape = '
+        f'"{config.geometry.shape}": its lower side stands for tissue that goes on. '
+        'Try boundary.clamp = "hole".'
+    )
+
+
+CHECKS: Final = (hole, meaning, built, transition, clamp)
