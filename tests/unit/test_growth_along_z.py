@@ -11,7 +11,8 @@ from gyrify.mesh import GREY
 from gyrify.model.slice import Slice
 from gyrify.physics.growth import out_of_plane_growth
 from gyrify.run.simulation import simulate
-from gyrify.run.validity.expected import annulus_of, expected_onset
+from gyrify.run.validity.exact_bodies import annulus_of
+from gyrify.run.validity.expected import expected_onset
 from gyrify.theory import Annulus, base_state
 
 STRETCH = np.array([1.0, 1.3, 2.0])

@@ -9,7 +9,8 @@ import pytest
 from validity_cases import PUBLISHED, case
 
 from gyrify.config import Config
-from gyrify.run.validity.expected import annulus_of, expected_onset
+from gyrify.run.validity.exact_bodies import annulus_of
+from gyrify.run.validity.expected import expected_onset
 from gyrify.theory import Bilayer, critical_growth_time, critical_wrinkle, neutral_curve
 
 RINGS = {

@@ -200,9 +200,10 @@ def _report(summary: dict[str, Any], folder: Path) -> None:
 
     gi, deepest = summary["gi"], summary["sulcal_depth_mm"]["max"]
     sulci = f"sulci up to {deepest:.{decimals([deepest], 2)}f} mm deep" if summary["n_gyri"] else "no sulci"
+    kind, indices = ("GI by area", gi["area"]) if "area" in gi else ("GI", gi)
     say(
-        f"GI {gi['closing']:.3f} (closing of {gi['closing_radius_mm']:g} mm), {gi['hull']:.3f} (hull); "
-        f"{summary['n_gyri']} gyri; {sulci}."
+        f"{kind} {indices['closing']:.3f} (closing of {gi['closing_radius_mm']:.4g} mm), "
+        f"{indices['hull']:.3f} (hull); {summary['n_gyri']} gyri; {sulci}."
     )
     say(f"{summary['converged']['sentence']} Check: {_check_command(summary, folder)}")
     solver = summary["solver"]

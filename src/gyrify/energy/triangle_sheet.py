@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gyrify.base.tiling import tiled
 from gyrify.energy.term import FloatArray, IntArray
 
 
@@ -49,25 +50,10 @@ class TriangleSheet:
         own = np.arange(points.shape[0])
         if periods is None:
             return TriangleSheet(own, np.zeros(points.shape), _edges(faces), faces)
-        size = np.array(periods)
-        corners = points[faces, :2]
-        # A corner's number of periods to where it lies next to the first corner.
-        turns = -np.round((corners - corners[:, :1]) / size).astype(np.int64)
-        shifts = [(i, j) for i in (0, -1, 1) for j in (0, -1, 1)]
-        turns = np.concatenate([turns + shift for shift in shifts])
-        source = np.tile(faces, (len(shifts), 1))
-        keys = np.concatenate([turns, source[:, :, None]], axis=2).reshape(-1, 3)
-        kept, number = np.unique(keys, axis=0, return_inverse=True)
-        is_image = np.any(kept[:, :2] != 0, axis=1)
-        order = np.lexsort((kept[:, 1], kept[:, 0], kept[:, 2], is_image))
-        if not np.array_equal(kept[order][: own.size, 2], own):
-            raise ValueError("every point of a periodic surface must be a corner of a triangle")
-        place = np.empty(order.size, dtype=np.int64)
-        place[order] = np.arange(order.size)
-        triangles = place[number.ravel()].reshape(-1, 3)
-        offset = np.zeros((order.size, 3))
-        offset[:, :2] = kept[order, :2] * size
-        return TriangleSheet(kept[order, 2], offset, _edges(triangles), triangles)
+        source, turns, triangles = tiled(points, faces, periods)
+        offset = np.zeros((source.size, 3))
+        offset[:, :2] = turns * np.array(periods)
+        return TriangleSheet(source, offset, _edges(triangles), triangles)
 
 
 def smallest_height(corners: FloatArray) -> float:

@@ -131,7 +131,11 @@ class Mesh:
     @property
     def cell_points(self) -> FloatArray:
         """(n_cells, n_nodes, n_dim) reference coordinates of each cell, unwrapped across the period."""
-        corners = self.points[self.cells]
+        return self.unwrapped(self.cells)
+
+    def unwrapped(self, simplices: IntArray) -> FloatArray:
+        """(n, n_nodes, n_dim) reference coordinates of cells or faces, those of one next to each other."""
+        corners = self.points[simplices]
         for axis, period in enumerate((self.period, self.period_y)):
             if period is not None:
                 offset = corners[:, :, axis] - corners[:, :1, axis]

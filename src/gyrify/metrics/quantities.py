@@ -9,10 +9,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 from gyrify.metrics.deformed import Deformed
 from gyrify.metrics.sharpness import fold_sharpness
+
+if TYPE_CHECKING:
+    from gyrify.metrics.measure_surface import DeformedSurface
 
 # "run" and "notebook": what a run came to, in its report and in a notebook; "study": columns of a study's
 # report; "table": what `gyrify table` prints by itself; "converge": what `gyrify converge` compares.
@@ -50,6 +53,8 @@ class Quantity:
     least : float
         Size below which errors are relative to this instead of the value, in a body as large as the standard
         slice.
+    in_space : callable, optional
+        What measures it of a state of a body in space.
     """
 
     path: str
@@ -64,6 +69,11 @@ class Quantity:
     in_results: bool = True
     leads: bool = False
     least: float = 0.0
+    in_space: Callable[[DeformedSurface], float | int | bool | None] | None = None
+
+    def measured_by(self, n_dim: int) -> Callable[[Any], float | int | bool | None] | None:
+        """What measures it in the plane (2) or in space (3); None where nothing does."""
+        return self.measure if n_dim == 2 else self.in_space
 
     @property
     def key(self) -> str:
@@ -102,6 +112,7 @@ MEASURED: Final[list[Quantity]] = [
     Quantity(
         "gi.closing_radius_mm", float, "mm", "closing radius", about="Radius of the disc that closes sulci",
         measure=lambda s: float(s.closing_radius), name="closing_radius",
+        in_space=lambda s: float(s.closing_radius),
     ),
     Quantity(
         "gi.exposed", float, "1", "GI, exposed", 3, "Contour over the part of it on the closing's outline",
@@ -109,25 +120,29 @@ MEASURED: Final[list[Quantity]] = [
     ),
     Quantity(
         "n_gyri", int, "1", "gyri", None, "Maxima of the normal displacement from the smooth contour",
-        _EVERYWHERE, lambda s: s.folds.n_gyri,
+        _EVERYWHERE, lambda s: s.folds.n_gyri, in_space=lambda s: int(s.folds.crowns.size),
     ),
     Quantity(
         "sulcal_depth_mm.max", float, "mm", "deepest sulcus", 2,
         "Distance of the deepest fundus to the closing's outline", _EVERYWHERE,
         lambda s: float(s.depth.max()), "sulcal_depth_max", least=0.1,
+        in_space=lambda s: float(s.depth.max()),
     ),
     Quantity(
         "sulcal_depth_mm.mean", float, "mm", "mean sulcal depth", 2,
         "Mean distance of the fundi to the closing's outline", _in("notebook", "converge"),
         lambda s: float(s.depth.mean()), "sulcal_depth_mean", least=0.1,
+        in_space=lambda s: float(s.fundus_depth.mean()),
     ),
     Quantity(
         "thickness_mm.crown", float, "mm", "cortex at crowns", 2, "Mean shortest distance to the interface",
         _in("run", "notebook", "study"), lambda s: s.thickness[0], "thickness_crown",
+        in_space=lambda s: s.thickness[0],
     ),
     Quantity(
         "thickness_mm.fundus", float, "mm", "cortex at fundi", 2, "Mean shortest distance to the interface",
         _in("run", "notebook", "study"), lambda s: s.thickness[1], "thickness_fundus",
+        in_space=lambda s: s.thickness[1],
     ),
     Quantity(
         "gyrus_width_mm", float, "mm", "width of gyri", 2, "Mean chord across a gyrus at half its height",
@@ -149,11 +164,40 @@ MEASURED: Final[list[Quantity]] = [
     Quantity(
         "min_gap_mm", float, "mm", "smallest gap of the contour", None,
         "Smallest distance between pieces of the contour that are no neighbours",
-        measure=lambda s: s.gap, name="min_gap",
+        measure=lambda s: s.gap, name="min_gap", in_space=lambda s: s.gap,
     ),
     Quantity(
         "self_intersecting", bool, "", "crosses itself", None, "Whether the contour crosses itself",
-        measure=lambda s: s.crosses_itself,
+        measure=lambda s: s.crosses_itself, in_space=lambda s: s.crosses_itself,
+    ),
+    Quantity(
+        "gi.area.hull", float, "1", "GI by area, hull", 3, "Surface over the area of the convex hull",
+        _in("run", "notebook", "converge"), in_results=False, in_space=lambda s: s.area / s.hull_area,
+    ),
+    Quantity(
+        "gi.area.closing", float, "1", "GI by area, closing", 3, "Surface over the outline of the closing",
+        _in("run", "notebook", "converge"), in_results=False, leads=True,
+        in_space=lambda s: s.area / s.closing.area,
+    ),
+    Quantity(
+        "gi.sections", float, "1", "GI of sections", 3, "Mean index by the closing of sections across x",
+        _in("run", "notebook", "converge"), in_results=False, in_space=lambda s: s.section_index,
+    ),
+    Quantity(
+        "surface_area_mm2", float, "mm²", "outer surface", 0, "Area of the outer surface",
+        _in("run", "notebook"), name="surface_area", in_results=False, in_space=lambda s: s.area,
+    ),
+    Quantity(
+        "volume_mm3", float, "mm³", "volume", 0, "Within the outer surface",
+        _in("notebook"), name="volume", in_results=False, in_space=lambda s: s.volume,
+    ),
+    Quantity(
+        "mean_curvature", float, "1/mm", "mean curvature", 3, "Mean of the absolute mean curvature",
+        _in("notebook"), in_results=False, in_space=lambda s: s.mean_curvature,
+    ),
+    Quantity(
+        "wavelength_mm", float, "mm", "wavelength", 1, "Of the wave that varies as the depth of sulci does",
+        _in("run", "notebook"), name="wavelength", in_results=False, in_space=lambda s: s.wavelength,
     ),
 ]  # fmt: skip
 
@@ -201,6 +245,11 @@ _AFTER: Final = [
     Quantity("phenotype", str),
     Quantity("phenotype_rule", str),
 ]  # fmt: skip
+
+
+def measured_in(n_dim: int) -> list[Quantity]:
+    """Quantities of a state in the plane (2) or in space (3)."""
+    return [quantity for quantity in MEASURED if quantity.measured_by(n_dim) is not None]
 
 
 def quantities() -> Iterator[Quantity]:

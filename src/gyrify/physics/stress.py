@@ -135,6 +135,42 @@ def planar_cauchy(
     return factor * b11 + W_J, factor * b22 + W_J, factor * b33 + W_J, factor * b12
 
 
+def cauchy(
+    material: Material, F: FloatArray, parameters: FloatArray, pressure: FloatArray | None = None
+) -> FloatArray:
+    """Cauchy stress of a body in space.
+
+    Parameters
+    ----------
+    material : Material
+        Which solid.
+    F : (n, 3, 3) float array
+        Elastic deformation gradient.
+    parameters : (n_parameters, n) float array
+        Of the material; the last one is the bulk modulus [Pa].
+    pressure : (n,) float array, optional
+        Volumetric part of the stress [Pa], where it is not that of the material at F.
+
+    Returns
+    -------
+    (n, 3, 3) float array
+        [Pa].
+    """
+    J = np.linalg.det(F)
+    if pressure is not None:
+        parameters = np.concatenate([parameters[:-1], np.zeros_like(parameters[-1:])])
+    extra = np.zeros_like(J) if pressure is None else pressure
+    if material.form == "stretches":
+        stretches, n, _ = _stretches(F, np.ones_like(J))
+        W = np.stack(_plain(material.derivatives)(*stretches, parameters, _ALL)[:3])
+        principal = W * stretches / J + extra
+        return np.asarray(np.einsum("ac,cia,cja->cij", principal, n, n))
+    b = np.einsum("cik,cjk->cij", F, F)
+    I1 = np.trace(b, axis1=1, axis2=2)
+    W_1, W_J, *_ = _plain(material.derivatives)(I1, J, np.cbrt(J), parameters, _ALL)
+    return np.asarray((2.0 * W_1 / J)[:, None, None] * b + (W_J + extra)[:, None, None] * np.eye(3))
+
+
 def _planar_cauchy_by_stretches(
     material: Material,
     F: FloatArray,

@@ -10,6 +10,7 @@ from typing import Final, get_args
 import numpy as np
 
 from gyrify.base.arguments import Pathlike, as_path, real_number, whole_number
+from gyrify.config.plane_only import require_plane
 from gyrify.config.run_sections import OutputField
 from gyrify.errors import ConfigError
 from gyrify.report.animate_files import durations, video_encoder, watched, write_gif, write_mp4
@@ -17,9 +18,9 @@ from gyrify.report.animate_scene import Pixels, Scene
 from gyrify.report.plot.field_colours import PAINTS
 from gyrify.report.plot.shown import Run, Shown, run_title, show
 from gyrify.store.disk_faults import storage_faults
-from gyrify.store.fields import CELL_FIELDS
 from gyrify.store.files import whole_file
 from gyrify.store.history import History
+from gyrify.store.state_fields import CELL_FIELDS
 
 __all__ = ["FIELDS", "animate"]
 
@@ -85,6 +86,7 @@ def animate(
     width = whole_number("width", width)
     _check(target, field, fps=fps, seconds=seconds, width=width)
     (last,) = show([run])
+    require_plane(last.history.config, "An animation", "history.vtkhdf opens in ParaView, which animates it.")
     states, repeats = frames_of(last.history, max(round(fps * seconds), 2))
     scene = Scene(states, 2 * round(width / 2), _field(field))
     with storage_faults(target.parent, f"The animation {target}"), whole_file(target) as partial:

@@ -7,14 +7,14 @@ import io
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from gyrify.base.extras import require
 from gyrify.metrics.quantities import Quantity, flat, shown_in
 from gyrify.report.outputs import folded_picture
 from gyrify.run.summary import metrics_rows, summarise
-from gyrify.store.fields import POINT_FIELDS, fields
+from gyrify.store.external import cell_type, padded
+from gyrify.store.fields import fields
 from gyrify.store.history import History
+from gyrify.store.state_fields import POINT_FIELDS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -97,8 +97,9 @@ def to_pyvista(history: History, index: int = -1, *, deformed: bool = True) -> U
     Returns
     -------
     pyvista.UnstructuredGrid
-        Points [mm] with z = 0 and triangles; vectors and tensors have three dimensions. Where the points are
-        deformed already, the displacement is called ``displacement_done``, so that none warps them twice.
+        Points [mm], with z = 0 in the plane, and cells; vectors and tensors have three dimensions. Where the
+        points are deformed already, the displacement is called ``displacement_done``, so that none warps them
+        twice.
 
     Raises
     ------
@@ -109,18 +110,13 @@ def to_pyvista(history: History, index: int = -1, *, deformed: bool = True) -> U
     """
     pyvista = _library("pyvista")
     x = history.points(index) if deformed else history.mesh.points
-    kinds = {3: pyvista.CellType.TRIANGLE, 6: pyvista.CellType.QUADRATIC_TRIANGLE}
     cells = history.mesh.cells
-    grid = pyvista.UnstructuredGrid({kinds[cells.shape[1]]: cells}, _in_space(x))
+    grid = pyvista.UnstructuredGrid({cell_type(history.mesh).vtk: cells}, padded(x))
     for name, values in fields(history, index).items():
         data = grid.point_data if name in POINT_FIELDS else grid.cell_data
         label = DONE if deformed and name == "displacement" else name
-        data[label] = _in_space(values) if values.ndim == 2 else values.reshape(len(values), -1).squeeze()
+        data[label] = padded(values) if values.ndim == 2 else values.reshape(len(values), -1).squeeze()
     return grid
-
-
-def _in_space(vectors: Any) -> Any:
-    return np.column_stack([vectors, np.zeros(len(vectors))])
 
 
 def _library(name: str) -> Any:
@@ -132,7 +128,11 @@ def _lines(summary: dict[str, Any]) -> list[tuple[str, str]]:
     values, solver = flat(summary), summary["solver"]
     return [
         ("status", " ".join(filter(None, (summary["status"], summary["reason"], summary["advice"])))),
-        *((_label(quantity, values), _number(values[quantity.key])) for quantity in shown_in("notebook")),
+        *(
+            (_label(quantity, values), _number(values[quantity.key]))
+            for quantity in shown_in("notebook")
+            if quantity.key in values
+        ),
         ("mesh", summary["converged"]["sentence"]),
         *(("warning", sentence) for sentence in summary["warnings"]),
         ("growth time", _number(summary["growth_time"])),
@@ -144,7 +144,7 @@ def _lines(summary: dict[str, Any]) -> list[tuple[str, str]]:
 
 
 def _label(quantity: Quantity, values: dict[str, Any]) -> str:
-    if quantity.key == "gi_closing":
+    if quantity.key in ("gi_closing", "gi_area_closing"):
         return f"{quantity.label} of {values['gi_closing_radius_mm']:g} mm"
     return quantity.axis
 

@@ -11,6 +11,7 @@ from gyrify.base.arguments import Pathlike, as_path
 from gyrify.errors import HistoryError
 from gyrify.report.figures import folded_figure, save_figure
 from gyrify.report.mode_figure import mode_figure, wave_words
+from gyrify.run.measured import surface_of
 from gyrify.run.summary import summarise, write_metrics, write_summary
 from gyrify.run.validity.converged import mark
 from gyrify.solve.stability import Onset
@@ -101,6 +102,9 @@ def folded_picture(history: History, summary: dict[str, Any]) -> Figure:
     )
     if history.status != "completed":
         title += f" ({history.status} at {history.fractions[-1]:.0%} of growth)"
+    told = mark(summary["converged"], len(summary["warnings"]))
+    if mesh.n_dim == 3:
+        return _folded_body(history, summary, title, told)
     return folded_figure(
         history.points(),
         mesh.triangles,
@@ -111,9 +115,23 @@ def folded_picture(history: History, summary: dict[str, Any]) -> Figure:
         gi=summary["gi"]["closing"],
         n_gyri=summary["n_gyri"],
         title=title,
-        mark=mark(summary["converged"], len(summary["warnings"])),
+        mark=told,
         period=mesh.period,
     )
+
+
+def _folded_body(history: History, summary: dict[str, Any], title: str, told: str) -> Figure:
+    """Picture of a body in space: three views and a section."""
+    from gyrify.report.space_figure import space_figure
+
+    surface = surface_of(history.mesh, history.points(), history.config.metrics)
+    gi, n_gyri = summary["gi"], summary["n_gyri"]
+    index = (
+        f"GI by area {gi['area']['closing']:.3f} (closing, {gi['closing_radius_mm']:.3g} mm), "
+        f"{gi['area']['hull']:.3f} (hull); {n_gyri} {'gyrus' if n_gyri == 1 else 'gyri'}"
+    )
+    text = [(title, 9, "bold"), (index, 8, "normal"), (told, 7, "normal")]
+    return space_figure(history.mesh, history.points(), depth=surface.depth, text=text)
 
 
 def onset_picture(history: History, onset: Onset) -> Figure:

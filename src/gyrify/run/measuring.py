@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -12,7 +13,7 @@ from gyrify.base.arguments import real_number
 from gyrify.config import Config
 from gyrify.config.run_sections import Metrics
 from gyrify.metrics import Measures
-from gyrify.metrics.measure import measure_valid
+from gyrify.run.measured import measured
 from gyrify.run.validity.lengths import check_lengths
 from gyrify.store.files import whole_file
 from gyrify.store.history import History
@@ -75,9 +76,7 @@ def _measured(history: History, index: int, chosen: Metrics, *, earlier: bool = 
     key = ("measures", number, *lengths, chosen.samples, earlier)
     if key not in history.known_measures:
         x, mesh = history.points(number), history.mesh
-        history.known_measures[key] = measure_valid(
-            x[mesh.contour], x[mesh.interface], *lengths, chosen.samples, mesh.period, earlier=earlier
-        )
+        history.known_measures[key] = measured(mesh, x, chosen, earlier=earlier)
     found: Measures = history.known_measures[key]
     return found
 
@@ -169,7 +168,10 @@ def _rows(
 
 
 def nodes_per_wavelength(history: History, measures: Measures) -> float | None:
-    """Points of the contour on one fold; None without gyri."""
+    """Points of the contour on one fold, in space on a wavelength; None without gyri."""
+    if history.mesh.n_dim == 3:
+        area_per_point = measures.surface_area / history.mesh.contour.size
+        return measures.wavelength / math.sqrt(area_per_point) if measures.wavelength else None
     return history.mesh.contour.size / measures.n_gyri if measures.n_gyri else None
 
 

@@ -120,7 +120,7 @@ def _summary(history: History, measures: Measures) -> dict[str, Any]:
     )
     is_complete = history.status == "completed"
     summary["expected"] = expected_onset(history.config).as_dict()
-    summary["converged"] = convergence(history.config, measures.gi_closing, is_complete=is_complete)
+    summary["converged"] = convergence(history.config, measures.index, is_complete=is_complete)
     known = by_key()
     summary["units"] = {name: known[name].unit for name in _flat_names(summary) if _has_unit(name, known)}
     summary["warnings"] = [*config_warnings(history.config), *run_warnings(history, summary)]

@@ -12,6 +12,7 @@ import numpy as np
 
 from gyrify.base.arguments import Pathlike, as_path, real_number
 from gyrify.base.extras import require
+from gyrify.config.plane_only import require_plane
 from gyrify.config.run_sections import OutputField
 from gyrify.errors import ConfigError, HistoryError
 from gyrify.store.contour_table import write_contour
@@ -92,6 +93,7 @@ def export(
         if format == "csv":
             return _write_csv(history, target, states)
         if format == "contour":
+            require_plane(history.config, "The contour as a table", "Export it as vtu or stl.")
             return write_contour(history, target, states)
         if format == "stl":
             return write_stl(history, target, states, tall)

@@ -10,8 +10,9 @@ import numpy as np
 from gyrify.config.run_sections import OutputField
 from gyrify.mesh import Mesh
 from gyrify.solve.types import FloatArray
-from gyrify.store.fields import POINT_FIELDS, fields
+from gyrify.store.fields import fields
 from gyrify.store.history import History
+from gyrify.store.state_fields import POINT_FIELDS
 
 
 class CellType(NamedTuple):

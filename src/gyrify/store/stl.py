@@ -1,4 +1,4 @@
-"""STL: the deformed slice as a closed solid, which can be printed."""
+"""STL: the deformed slice as a closed solid, or the body in space, which can be printed."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from gyrify.errors import ConfigError
 from gyrify.mesh import Mesh
 from gyrify.solve.types import FloatArray
 from gyrify.store.external import numbered
@@ -24,13 +25,31 @@ def write_stl(history: History, path: Path, states: list[int], thickness: float)
     """Write a file per state, binary and in single precision, as the format has it."""
     files = numbered(path, states)
     for file, number in zip(files, states, strict=True):
-        corners = solid(history.mesh, history.points(number), thickness)
+        mesh, points = history.mesh, history.points(number)
+        corners = solid(mesh, points, thickness) if mesh.n_dim == 2 else boundary(mesh, points)
         records = np.zeros(len(corners), dtype=_RECORD)
         records["corners"] = corners
         records["normal"] = _normals(corners)
         count = np.array(len(corners), dtype="<u4").tobytes()
         fresh(file).write_bytes(_HEADER + count + records.tobytes())
     return files
+
+
+def boundary(mesh: Mesh, points: FloatArray) -> FloatArray:
+    """(n_triangles, 3, 3) corners of the boundary of a body in space, as seen from outside [mm].
+
+    Raises
+    ------
+    ConfigError
+        If the body is periodic: its sides are no boundary.
+    """
+    if mesh.period is not None:
+        raise ConfigError("A patch has no closed surface to print.", "Export it as vtu.")
+    # faces that one cell has alone, each opposite a corner
+    opposite = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
+    faces = mesh.cells[:, opposite].reshape(-1, 3)
+    _, first, counts = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+    return np.asarray(points[faces[np.sort(first[counts == 1])]])
 
 
 def solid(mesh: Mesh, points: FloatArray, thickness: float) -> FloatArray:

@@ -31,9 +31,10 @@ from gyrify.solve.types import FloatArray
 from gyrify.store.derived import sha256_of
 from gyrify.store.disk_faults import storage_faults
 from gyrify.store.external import cell_type, padded
-from gyrify.store.fields import CONTOUR_FIELDS, POINT_FIELDS, STATIC_FIELDS, UNITS, FieldMaker, StateFields
+from gyrify.store.fields import CONTOUR_FIELDS, STATIC_FIELDS, UNITS, FieldMaker
 from gyrify.store.files import whole_file
 from gyrify.store.history import History
+from gyrify.store.state_fields import POINT_FIELDS, StateFields
 
 FORMAT_VERSION: Final = (2, 2)
 

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gyrify.errors import GyrifyError
-from gyrify.run.validity.expected import annulus_of, expected_onset
+from gyrify.run.validity.exact_bodies import annulus_of
+from gyrify.run.validity.expected import expected_onset
 from gyrify.theory import BaseState, base_state, stability_margin
 from gyrify.threshold.scanned_parameter import configured
 

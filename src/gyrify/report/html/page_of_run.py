@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from gyrify.config.plane_only import require_plane
 from gyrify.report.html.assembly import RUN_SCRIPTS, page
 from gyrify.report.html.colours import colour_maps
 from gyrify.report.html.describe import about
@@ -26,6 +27,7 @@ def run_page(history: History, name: str) -> str:
     str
         HTML that needs no network and no other file; equal runs and names give equal pages.
     """
+    require_plane(history.config, "A report")
     mesh, onset = history.mesh, history.onset
     mode = None if onset is None else mode_shapes(mesh, onset.displacement, onset.vector)
     header, payload = packed_frames(mesh, frames_of(history, PLANS[0][0]), mode)

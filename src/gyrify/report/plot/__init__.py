@@ -11,6 +11,7 @@ from typing import Final, Literal, get_args
 from matplotlib.figure import Figure
 
 from gyrify.base.arguments import as_path, real_number
+from gyrify.config.plane_only import require_plane
 from gyrify.errors import ConfigError
 from gyrify.report.plot.dispersion import dispersion_plot
 from gyrify.report.plot.energy import energy_plot
@@ -44,6 +45,9 @@ _CURVES: Final = ("gi", "energy", "dispersion")
 _MOST_RUNS: Final = 500
 _NOTEBOOK_DPI: Final = 110
 _NARROWEST, _WIDEST = 60.0, 300.0
+
+
+_PICTURE = "folded.png in the run folder shows it; history.vtkhdf opens in ParaView."
 
 
 def plot(
@@ -102,6 +106,8 @@ def plot(
     if not isinstance(run, History) and is_study(as_path("run", run)):
         return _seen(study_plot(as_path("run", run), what, len(others), at, width_mm))
     states = show([run, *others], at)
+    for state in states:
+        require_plane(state.history.config, "A picture like this", _PICTURE)
     if what == "stress":
         return _seen(stress_plot(states, width_mm, stress))
     return _seen(_MAKERS[what](states, width_mm))

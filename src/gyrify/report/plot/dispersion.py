@@ -20,7 +20,7 @@ from gyrify.report.drawn_slice import FloatArray
 from gyrify.report.plot.curves import curves, title_of
 from gyrify.report.plot.shown import Shown
 from gyrify.report.plot.style import DASHES, HUES, SINGLE, add_legend, literal
-from gyrify.run.validity import expected
+from gyrify.run.validity import exact_bodies
 from gyrify.theory import Annulus, SecondVariation, base_state, surface_limit
 from gyrify.theory.margin import scaled
 
@@ -70,7 +70,7 @@ def annulus_of(config: Config) -> Annulus:
             "A strip has no circumferential modes: dispersion is that of the exact circular slice.",
             "Choose another picture with --what; docs/strip.md has the exact onset of strips.",
         )
-    return replace(expected.annulus_of(config), degree=Annulus.degree)
+    return replace(exact_bodies.annulus_of(config), degree=Annulus.degree)
 
 
 def dispersion(annulus: Annulus, modes: Iterable[int]) -> Dispersion:

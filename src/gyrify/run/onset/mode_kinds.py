@@ -9,6 +9,8 @@ import numpy as np
 
 from gyrify.mesh import Mesh
 from gyrify.mesh.waves import contour_edges, dominant_wave, normal_displacement
+from gyrify.metrics.surface import face_areas
+from gyrify.run.onset.space_waves import outwards_in_space, surface_wave
 from gyrify.solve.types import FloatArray
 
 Kind = Literal["fold", "surface", "twist", "translation", "swelling"]
@@ -33,9 +35,11 @@ class Wave:
         that the mesh cannot resolve them; ``twist``: a rotation about the hole; ``translation``: a shift
         against it; ``swelling``: uniformly outwards or inwards.
     mode_number : int
-        Waves along the contour (along one period of a strip): 0 for twist and swelling.
+        Waves along the contour (along one period of a strip), in space see `surface_wave`: 0 for twist and
+        swelling.
     wavelength : float
-        Deformed length of the contour over the mode number [mm]; 0 where that is 0.
+        Deformed length of the contour over the mode number [mm], in space see `surface_wave`; 0 where the
+        number is 0.
     """
 
     kind: Kind
@@ -50,15 +54,21 @@ def wave_of(mesh: Mesh, u: FloatArray, mode: FloatArray) -> Wave:
     ----------
     mesh : Mesh
         The reference mesh.
-    u : (n_points, 2) float array
+    u : (n_points, n_dim) float array
         State [mm].
-    mode : (n_points, 2) float array
+    mode : (n_points, n_dim) float array
         Displacement from there, in any unit.
 
     Returns
     -------
     Wave
     """
+    if mesh.n_dim == 3:
+        number, wavelength = surface_wave(mesh, u, mode)
+        if number == 0:
+            return Wave("swelling", 0, 0.0)
+        is_at_limit = wavelength < _FEW_POINTS * np.sqrt(_area_per_point(mesh, u))
+        return Wave("surface" if is_at_limit else "fold", number, wavelength)
     lengths = np.linalg.norm(contour_edges(mesh, u), axis=1)
     weight = 0.5 * (lengths + np.roll(lengths, 1))
     total, moved = float(weight.sum()), mode[mesh.contour]
@@ -74,6 +84,11 @@ def wave_of(mesh: Mesh, u: FloatArray, mode: FloatArray) -> Wave:
     is_short = wavelength < _SHORT * mean_thickness(mesh, u)
     is_at_limit = mesh.contour.size < _FEW_POINTS * number
     return Wave("surface" if is_short or is_at_limit else "fold", number, wavelength)
+
+
+def _area_per_point(mesh: Mesh, u: FloatArray) -> float:
+    """Area of a deformed surface over its number of points [mm^2]."""
+    return float(face_areas(mesh.unwrapped(mesh.faces) + u[mesh.faces]).sum()) / mesh.contour.size
 
 
 def _twisting(mesh: Mesh, u: FloatArray, moved: FloatArray, weight: FloatArray) -> float:
@@ -102,6 +117,8 @@ def _area(mesh: Mesh, line: FloatArray) -> float:
 
 def outwards(mesh: Mesh, u: FloatArray, mode: FloatArray) -> FloatArray:
     """A mode with the sign by which its largest displacement normal to the contour points outwards."""
+    if mesh.n_dim == 3:
+        return outwards_in_space(mesh, u, mode)
     normal = normal_displacement(mesh, u, mode)
     # Among peaks that are equal but for rounding, the first one decides.
     peak = int(np.argmax(np.abs(normal) > (1.0 - 1e-6) * np.abs(normal).max()))

@@ -9,8 +9,8 @@ from typing import Final
 import numpy as np
 
 from gyrify.metrics import Measures
-from gyrify.metrics.measure import measure_valid
 from gyrify.model.slice import Slice
+from gyrify.run.measured import measured
 from gyrify.solve.newton import minimise
 from gyrify.solve.relaxation import KEPT, Relaxation
 from gyrify.solve.result import Result
@@ -48,9 +48,9 @@ def relax(
     if solution.result is not Result.CONVERGED:
         return None
     held, free = _measured(problem, u), _measured(problem, solution.u)
-    is_kept = are_folds_kept((held.n_gyri, held.gi_closing), (free.n_gyri, free.gi_closing))
+    is_kept = are_folds_kept((held.n_gyri, held.index), (free.n_gyri, free.index))
     moved = np.linalg.norm(solution.u - u, axis=1)[: problem.mesh.n_points]
-    return Relaxation(float(free.gi_closing), int(free.n_gyri), float(moved.max()), is_kept)
+    return Relaxation(float(free.index), int(free.n_gyri), float(moved.max()), is_kept)
 
 
 def are_folds_kept(held: tuple[int, float], free: tuple[int, float]) -> bool:
@@ -61,11 +61,4 @@ def are_folds_kept(held: tuple[int, float], free: tuple[int, float]) -> bool:
 def _measured(problem: Slice, u: FloatArray) -> Measures:
     mesh, metrics = problem.mesh, problem.config.metrics
     x = mesh.points + u[: mesh.n_points]
-    return measure_valid(
-        x[mesh.contour],
-        x[mesh.interface],
-        metrics.closing_radius,
-        metrics.gyrus_prominence,
-        metrics.samples,
-        mesh.period,
-    )
+    return measured(mesh, x, metrics)

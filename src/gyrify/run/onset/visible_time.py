@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 from gyrify.mesh import Mesh
 from gyrify.mesh.mesh import FloatArray
 from gyrify.metrics.gyrification import index_of
-from gyrify.metrics.measure import measure_valid
+from gyrify.run.measured import measured, surface_of
 
 if TYPE_CHECKING:
     from gyrify.config.run_sections import Metrics
@@ -46,13 +46,13 @@ def visible_time(history: History, level: float = VISIBLE) -> float | None:
 
 
 def visible_index(mesh: Mesh, points: FloatArray, metrics: Metrics, level: float = VISIBLE) -> float:
-    """Index by the closing; 1 where that by the hull, which is never smaller, is at most a level.
+    """Index by the closing, of areas in space; 1 where that by the hull is at most a level.
 
     Parameters
     ----------
     mesh : Mesh
         The reference mesh.
-    points : (n_points, 2) float array
+    points : (n_points, n_dim) float array
         Deformed coordinates [mm].
     metrics : Metrics
         Section of the configuration.
@@ -63,10 +63,14 @@ def visible_index(mesh: Mesh, points: FloatArray, metrics: Metrics, level: float
     -------
     float
     """
+    if mesh.n_dim == 3:
+        surface = surface_of(mesh, points, metrics)
+        if surface.area <= level * surface.hull_area:
+            return 1.0
+        return surface.area / surface.closing.area
     contour = points[mesh.contour]
     if mesh.period is None:
         if index_of(contour, "hull", metrics.closing_radius) <= level:
             return 1.0
         return index_of(contour, "closing", metrics.closing_radius)
-    samples = (metrics.closing_radius, metrics.gyrus_prominence, metrics.samples)
-    return measure_valid(contour, points[mesh.interface], *samples, mesh.period).gi_closing
+    return measured(mesh, points, metrics).gi_closing

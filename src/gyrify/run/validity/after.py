@@ -35,22 +35,23 @@ def run_warnings(history: History, summary: dict[str, Any]) -> list[str]:
     return [sentence for check in CHECKS for sentence in check(history, summary)]
 
 
-def fold_resolution(_: History, summary: dict[str, Any]) -> list[str]:
+def fold_resolution(history: History, summary: dict[str, Any]) -> list[str]:
     """Warn of folds that few points of the contour make up."""
     nodes = summary["nodes_per_wavelength"]
     if nodes is None or nodes >= POINTS_PER_FOLD:
         return []
-    return [
-        f"A fold spans only {nodes:.1f} points of the contour (8 are needed to resolve it): "
-        "raise mesh.n_around."
-    ]
+    where, advice = "contour", "raise mesh.n_around"
+    if history.mesh.n_dim == 3:
+        where, advice = "surface", "lower mesh.edge_length"
+    return [f"A fold spans only {nodes:.1f} points of the {where} (8 are needed to resolve it): {advice}."]
 
 
-def crossing(_: History, summary: dict[str, Any]) -> list[str]:
+def crossing(history: History, summary: dict[str, Any]) -> list[str]:
     """Warn of a contour that crosses itself."""
     if not summary["self_intersecting"]:
         return []
-    return ["The contour crosses itself: the state is not physical. Set contact.enabled = true."]
+    what = "contour" if history.mesh.n_dim == 2 else "surface"
+    return [f"The {what} crosses itself: the state is not physical. Set contact.enabled = true."]
 
 
 def stability(_: History, summary: dict[str, Any]) -> list[str]:
@@ -75,10 +76,11 @@ def dents(history: History, summary: dict[str, Any]) -> list[str]:
     deepest, prominence = summary["sulcal_depth_mm"]["max"], history.config.metrics.gyrus_prominence
     if summary["n_gyri"] == 0 or deepest >= NEGLIGIBLE * prominence:
         return []
+    hull = summary["gi"]["hull"] if history.mesh.n_dim == 2 else summary["gi"]["area"]["hull"]
     return [
         f"{summary['n_gyri']} gyri are counted, but the deepest sulcus measures {deepest:.2g} mm: the dents "
         f"between them are so wide that the disc of {summary['gi']['closing_radius_mm']:g} mm enters them. "
-        f"Go by GI hull ({summary['gi']['hull']:.4f}), or measure with a larger metrics.closing_radius."
+        f"Go by GI hull ({hull:.4f}), or measure with a larger metrics.closing_radius."
     ]
 
 

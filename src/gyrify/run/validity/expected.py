@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gyrify.errors import ConfigError, GyrifyError
+from gyrify.config.body_sections import PERIODIC
+from gyrify.errors import GyrifyError
+from gyrify.run.validity.exact_bodies import annulus_of, bilayer_of, sphere_of
 
 if TYPE_CHECKING:
     from gyrify.config import Config
-    from gyrify.theory import Annulus, Bilayer
+    from gyrify.theory import Bilayer
 
-# Degree of the elements across the wall: onset to 1e-4, in a seventh of the time that round-off takes.
-DEGREE: Final = 4
 # Growth times scanned, as parts of the duration; a slice may be unstable between two of them only.
 _SCAN: Final = (0.0, 0.15, 0.3, 0.45, 0.6, 0.8, 1.0)
-# Ratio of growth from which white matter counts as not growing.
-_STILL: Final = 1e3
 # Depth of white matter over a wavelength from which the clamped floor of a strip is not felt (1 % in load).
 _DEEP: Final = 0.5
 # What makes the theory of another configuration another one.
@@ -33,7 +32,7 @@ class Expected:
     Attributes
     ----------
     theory : str
-        ``annulus``, ``film on a half-space``, or empty where no theory covers the configuration.
+        ``annulus``, ``sphere``, ``film on a half-space``, or empty where no theory covers the configuration.
     not_covered : str
         Why none does; else empty.
     growth_time : float or None
@@ -63,8 +62,9 @@ class Expected:
 def expected_onset(config: Config) -> Expected:
     """What linear theory expects of a configuration, whatever its mesh.
 
-    A circle is exact; an ellipse stands as the circle of the same area and hole, a strip as a film on a
-    half-space with the same period. What they leave out is named in ``not_covered``.
+    A circle and a sphere are exact; an ellipse stands as the circle of the same area and hole, an ellipsoid
+    as the sphere of the same volume, a strip or a patch as a film on a half-space with the same period. What
+    they leave out is named in ``not_covered``.
 
     Parameters
     ----------
@@ -95,130 +95,56 @@ class _Held:
 @lru_cache(maxsize=256)
 def _expected(_geometry: str, _material: str, _growth: str, _boundary: str, held: _Held) -> Expected:
     config = held.config
+    is_flat, n_dim = config.geometry.shape in PERIODIC, config.geometry.n_dim
+    name = "film on a half-space" if is_flat else "annulus" if n_dim == 2 else "sphere"
     if config.growth.rate == 0.0:
-        return Expected("annulus" if config.geometry.shape != "strip" else "film on a half-space")
-    find = _strip if config.geometry.shape == "strip" else _ring
+        return Expected(name)
+    find = _strip if is_flat else _ring if n_dim == 2 else _ball
     try:
         return find(config)
     except GyrifyError as fault:
         return Expected("", f"The theory has no answer: {fault.message}")
 
 
-def require_covered(config: Config) -> None:
-    """Refuse by name what no exact theory has.
-
-    Raises
-    ------
-    ConfigError
-        If there is any of it.
-    """
-    if config.material.law != "neo_hookean":
-        raise ConfigError(
-            f'the theory has no material.law = "{config.material.law}".',
-            'Set material.law = "neo_hookean" to compare with it.',
-        )
-    if config.growth.profile != "sharp":
-        raise ConfigError(
-            f'the theory has no growth.profile = "{config.growth.profile}".',
-            'Set growth.profile = "sharp" to compare with it.',
-        )
-    if config.boundary.clamp != "hole" and config.geometry.n_dim == 2:
-        raise ConfigError(
-            f'the theory has no boundary.clamp = "{config.boundary.clamp}".',
-            'Set boundary.clamp = "hole" to compare with it.',
-        )
-
-
-def annulus_of(config: Config) -> Annulus:
-    """Circle of the same area, hole, tissue and growth.
-
-    Raises
-    ------
-    ConfigError
-        If it has no white matter, or something that the theory does not have.
-    """
-    from gyrify.theory import Annulus
-
-    require_covered(config)
-    geometry, material, growth = config.geometry, config.material, config.growth
-    radius = geometry.mean_radius
-    return Annulus(
-        inner_radius=geometry.hole_fraction * radius,
-        outer_radius=radius,
-        cortical_thickness=geometry.cortical_thickness,
-        young_modulus=material.young_modulus,
-        stiffness_ratio=material.stiffness_ratio,
-        poisson_ratio=material.poisson_ratio,
-        poisson_ratio_white=material.poisson_ratio_white,
-        growth_rate=growth.rate,
-        growth_ratio=growth.ratio,
-        duration=growth.duration,
-        out_of_plane=growth.out_of_plane,
-        out_of_plane_exponent=growth.out_of_plane_exponent,
-        stretch=growth.stretch,
-        energy_per=growth.energy_per,
-        law="tangential" if growth.is_tangential else "isotropic",
-        degree=DEGREE,
-    )
-
-
 def _ring(config: Config) -> Expected:
     """First growth time at which the annulus is unstable."""
-    from scipy.optimize import brentq
-
-    from gyrify.theory import BaseState, base_state, stability_margin
+    from gyrify.theory import base_state
 
     annulus = annulus_of(config)
-    guess: BaseState | None = None
+    return _first_loss("annulus", annulus.outer_radius, annulus.duration, partial(base_state, annulus))
+
+
+def _ball(config: Config) -> Expected:
+    """First growth time at which the sphere is unstable."""
+    from gyrify.theory import sphere_state
+
+    sphere = sphere_of(config)
+    return _first_loss("sphere", sphere.outer_radius, sphere.duration, partial(sphere_state, sphere))
+
+
+def _first_loss(name: str, radius: float, duration: float, state_at: Callable[..., Any]) -> Expected:
+    """Where the smooth state of a theory first loses stability, in growth time."""
+    from scipy.optimize import brentq
+
+    from gyrify.theory import stability_margin
+
+    guess: Any = None
 
     def margin(time: float) -> float:
         nonlocal guess
-        guess = base_state(annulus, time, guess)
+        guess = state_at(time, guess)
         return stability_margin(guess).value
 
-    times = [part * annulus.duration for part in _SCAN]
+    times = [part * duration for part in _SCAN]
     before = times[0]
     for time in times[1:]:
         if margin(time) < 0.0:
-            root = brentq(margin, before, time, xtol=1e-4 * annulus.duration, rtol=1e-4)
-            number = stability_margin(base_state(annulus, root, guess)).mode_number
-            wavelength = 2.0 * np.pi * annulus.outer_radius / number if number else None
-            return Expected("annulus", "", float(root), number, wavelength)
+            root = brentq(margin, before, time, xtol=1e-4 * duration, rtol=1e-4)
+            number = stability_margin(state_at(root, guess)).mode_number
+            wavelength = 2.0 * np.pi * radius / number if number else None
+            return Expected(name, "", float(root), number, wavelength)
         before = time
-    return Expected("annulus")
-
-
-_LOADINGS: Final = {
-    (False, "blocked"): "isotropic",
-    (False, "none"): "plane",
-    (True, "blocked"): "tangential",
-    (True, "none"): "uniaxial",
-}
-
-
-def bilayer_of(config: Config) -> Bilayer | str:
-    """Film on a half-space of the same tissue and growth, or why there is none."""
-    from gyrify.theory import Bilayer
-
-    require_covered(config)
-    growth, material = config.growth, config.material
-    still = growth.ratio >= _STILL
-    if growth.out_of_plane == "generalised":
-        return 'The theory of a strip has no growth.out_of_plane = "generalised".'
-    if growth.out_of_plane == "blocked" and growth.out_of_plane_exponent != 1.0:
-        return "The theory of a strip has no growth.out_of_plane_exponent other than 1."
-    if growth.stretch == "exponential" and not still:
-        return 'The theory of a strip has no growth.stretch = "exponential" while white matter grows too.'
-    if growth.is_tangential and not still:
-        return 'The theory of a strip has no growth.law = "tangential" while white matter grows too.'
-    return Bilayer(
-        stiffness_ratio=material.stiffness_ratio,
-        poisson_ratio=material.poisson_ratio,
-        poisson_ratio_substrate=material.poisson_ratio_white,
-        loading=_LOADINGS[growth.is_tangential, growth.out_of_plane],  # type: ignore[arg-type]
-        growth_ratio=np.inf if still else growth.ratio,
-        energy_per=growth.energy_per,
-    )
+    return Expected(name)
 
 
 def _strip(config: Config) -> Expected:
@@ -232,8 +158,12 @@ def _strip(config: Config) -> Expected:
     wrinkle = critical_wrinkle(bilayer)
     if wrinkle.is_surface:
         return Expected(name, "", _time_of(config, wrinkle.load))
-    number, load = _fitting(bilayer, geometry.length / T, wrinkle.scaled_thickness)
-    wavelength = geometry.length / number
+    if geometry.n_dim == 3:
+        wavelength = 2.0 * np.pi * T / wrinkle.scaled_thickness
+        number, load = round(geometry.length / wavelength), wrinkle.load
+    else:
+        number, load = _fitting(bilayer, geometry.length / T, wrinkle.scaled_thickness)
+        wavelength = geometry.length / number
     if geometry.depth - T < _DEEP * wavelength:
         return Expected("", "The theory of a strip has deep white matter: at least half a wavelength of it.")
     time = _time_of(config, load)

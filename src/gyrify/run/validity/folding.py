@@ -27,7 +27,8 @@ def smooth_against_theory(history: History, summary: dict[str, Any]) -> list[str
             "stable to the end of growth. Run it on a finer mesh (mesh.refine = 1): folds of the tissue "
             "stay, those of the mesh do not."
         ]
-    if time is None or n_gyri > 0 or summary["gi"]["closing"] > VISIBLE:
+    index = summary["gi"]["closing"] if history.mesh.n_dim == 2 else summary["gi"]["area"]["hull"]
+    if time is None or n_gyri > 0 or index > VISIBLE:
         return []
     return [
         f"The slice is smooth at the end of growth, but by exact theory ({expected.theory}) the smooth state "
@@ -58,6 +59,8 @@ def sawtooth(history: History, summary: dict[str, Any]) -> list[str]:
     from gyrify.metrics.periodic import strip_sawteeth
 
     metrics, mesh = history.config.metrics, history.mesh
+    if mesh.n_dim == 3:
+        return []
     contour = history.contour(len(history) - 1)
     if mesh.period is None:
         n_sawteeth = find_folds(contour, metrics.gyrus_prominence, metrics.samples).n_sawteeth

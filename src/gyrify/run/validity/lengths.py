@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from gyrify.config.body_sections import PERIODIC
 from gyrify.run.validity.ranges import contour_spacing
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ def _radius(config: Config) -> list[str]:
         return []
     advice = f"Leave metrics.closing_radius out to take {fitting:.4g} mm, which scales with the body."
     name, size = ("period", geometry.length)
-    if geometry.shape != "strip":
+    if geometry.shape not in PERIODIC:
         name, size = "mean radius", geometry.mean_radius
     if radius > size:
         return [

@@ -7,6 +7,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
+from gyrify.config.body_sections import PERIODIC
+from gyrify.config.space_checks import edge_length
+
 if TYPE_CHECKING:
     from gyrify.config import Config
 
@@ -89,7 +92,9 @@ def _plain(value: float) -> str:
 
 def _closed(value: Callable[[Config], float]) -> Callable[[Config], float | None]:
     """The quantity, for an ellipse or circle alone."""
-    return lambda config: None if config.geometry.shape == "strip" else value(config)
+    return lambda config: (
+        None if config.geometry.shape in PERIODIC or config.geometry.n_dim == 3 else value(config)
+    )
 
 
 def growth_strain(config: Config) -> float:
@@ -100,15 +105,17 @@ def growth_strain(config: Config) -> float:
 
 
 def contour_spacing(config: Config) -> float:
-    """Mean distance of neighbouring points of the contour at the start [mm].
+    """Mean distance of neighbouring points of the contour, or of the outer surface, at the start [mm].
 
     The perimeter of an ellipse by Ramanujan's first formula, true to 1e-4 up to an aspect ratio of 3.
     """
     geometry = config.geometry
+    if geometry.n_dim == 3:
+        return edge_length(config) / 2.0 ** (config.mesh.refine + config.mesh.refine_cortex)
     n_points: float = config.mesh.n_around * 2.0 ** (config.mesh.refine + config.mesh.refine_cortex)
     if geometry.shape == "strip":
         return geometry.length / n_points
-    a, b = geometry.outer_axes
+    a, b = geometry.outer_axes[:2]
     return math.pi * (3 * (a + b) - math.sqrt((3 * a + b) * (a + 3 * b))) / n_points
 
 
@@ -226,7 +233,7 @@ RANGES: Final[tuple[Range, ...]] = (
         1.5,
         "",
         "0.7 for the standard slice of Wang 2019, 1.4 for its thinnest cortex",
-        "Raise mesh.n_around.",
+        "Raise mesh.n_around, in space lower mesh.edge_length.",
         lambda config: contour_spacing(config) / config.geometry.cortical_thickness,
     ),
 )

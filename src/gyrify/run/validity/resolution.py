@@ -11,8 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gyrify.errors import GyrifyError, SolveError
-from gyrify.run.validity.expected import Expected, annulus_of, bilayer_of, expected_onset
+from gyrify.run.validity.exact_bodies import annulus_of, bilayer_of
+from gyrify.run.validity.expected import Expected, expected_onset
 from gyrify.run.validity.locking import locking
+from gyrify.run.validity.space_resolution import resolution_in_space
 
 if TYPE_CHECKING:
     from gyrify.config import Config
@@ -159,6 +161,8 @@ def _later(mesh: _SmoothMesh, start: float) -> float | None:
 
 def resolution(config: Config) -> list[str]:
     """Warn where the mesh delays the onset, hides it, or loses stability before the tissue does."""
+    if config.geometry.n_dim == 3:
+        return resolution_in_space(config)
     onset = mesh_onset(config)
     if onset is None:
         return []

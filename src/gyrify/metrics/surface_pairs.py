@@ -1,0 +1,123 @@
+"""What of a surface is close to what: crossings, the narrowest sulcus, distances to another surface."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from gyrify.metrics.surface import FloatArray, IntArray, face_vectors, vertex_normals
+
+# Walls of a sulcus face each other: the cosine of the angle between their normals is below this.
+_FACING: Final = -0.3
+_NEAREST: Final = 8
+
+
+def crosses_itself(points: FloatArray, faces: IntArray) -> bool:
+    """Whether an edge of a surface passes through a triangle that it has no point in common with.
+
+    Every crossing of two triangles has such an edge. The test knows nothing of the solver that made the
+    state.
+    """
+    edges = np.unique(
+        np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], 2).reshape(-1, 2), axis=1), axis=0
+    )
+    ends, corners = points[edges], points[faces]
+    middles, centres = ends.mean(axis=1), corners.mean(axis=1)
+    reach = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).max() / 2.0
+    reach += np.linalg.norm(corners - centres[:, None], axis=2).max()
+    near = cKDTree(middles).sparse_distance_matrix(cKDTree(centres), reach, output_type="ndarray")
+    edge, face = near["i"], near["j"]
+    apart = ~np.any(edges[edge][:, :, None] == faces[face][:, None, :], axis=(1, 2))
+    return bool(_pierce(ends[edge[apart]], corners[face[apart]]).any())
+
+
+def _pierce(ends: FloatArray, corners: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """Which of (n, 2, 3) edges pass through which of (n, 3, 3) triangles."""
+    p, q = ends[:, 0], ends[:, 1]
+    a, b, c = (corners[:, k] for k in range(3))
+    below, above = _volume(a, b, c, p), _volume(a, b, c, q)
+    sides = np.stack([_volume(p, q, a, b), _volume(p, q, b, c), _volume(p, q, c, a)], axis=1)
+    inside = np.all(sides > 0.0, axis=1) | np.all(sides < 0.0, axis=1)
+    return np.asarray((below * above < 0.0) & inside)
+
+
+def _volume(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray) -> FloatArray:
+    """Six times the signed volume of tetrahedra."""
+    return np.asarray(np.einsum("ni,ni->n", np.cross(b - a, c - a), d - a))
+
+
+def smallest_gap(points: FloatArray, faces: IntArray) -> float:
+    """Smallest way across a sulcus: outwards from a point of the surface to a triangle that faces it [mm].
+
+    Looked for from the points and the middles of the edges; infinite where nothing faces anything within a
+    tenth of the body's size.
+    """
+    corners = points[faces]
+    edges = np.unique(
+        np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], 2).reshape(-1, 2), axis=1), axis=0
+    )
+    normals = vertex_normals(points.shape[0], faces, corners)
+    starts = np.concatenate([points, points[edges].mean(axis=1)])
+    directions = np.concatenate([normals, normals[edges].sum(axis=1)])
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    facets = face_vectors(corners)
+    facets /= np.linalg.norm(facets, axis=1, keepdims=True)
+    centres = corners.mean(axis=1)
+    size = np.linalg.norm(corners - centres[:, None], axis=2).max()
+    tree, starts_tree = cKDTree(centres), cKDTree(starts)
+    reach, limit = 2.0 * size, 0.1 * float(np.ptp(points, axis=0).max()) + size
+    while True:
+        near = starts_tree.sparse_distance_matrix(tree, reach, output_type="ndarray")
+        start, face = near["i"], near["j"]
+        facing = np.einsum("ni,ni->n", directions[start], facets[face]) < _FACING
+        start, face = start[facing], face[facing]
+        across = closest_points(starts[start], corners[face]) - starts[start]
+        outwards = np.einsum("ni,ni->n", across, directions[start]) > 0.0
+        distance = np.linalg.norm(across[outwards], axis=1)
+        found = float(distance.min()) if distance.size else np.inf
+        if found <= reach - size or reach >= limit:
+            return found
+        reach *= 2.0
+
+
+def distances_to(points: FloatArray, corners: FloatArray) -> FloatArray:
+    """(n,) shortest distances from points to a surface of triangles [mm]."""
+    centres = corners.mean(axis=1)
+    n_near = min(_NEAREST, centres.shape[0])
+    _, face = cKDTree(centres).query(points, k=n_near)
+    face = face.reshape(points.shape[0], n_near)
+    flat = np.repeat(points, n_near, axis=0)
+    distance = np.linalg.norm(closest_points(flat, corners[face.ravel()]) - flat, axis=1)
+    return np.asarray(distance.reshape(face.shape).min(axis=1))
+
+
+def closest_points(points: FloatArray, corners: FloatArray) -> FloatArray:
+    """(n, 3) point of each of (n, 3, 3) triangles that is nearest to each of (n, 3) points."""
+    normal = face_vectors(corners)
+    square = np.maximum(np.einsum("ni,ni->n", normal, normal), 1e-300)
+    offset = points - corners[:, 0]
+    on_plane = points - (np.einsum("ni,ni->n", offset, normal) / square)[:, None] * normal
+    best, distance = on_plane, np.where(_is_inside(on_plane, corners, normal), -1.0, np.inf)
+    for k in range(3):
+        a, b = corners[:, k], corners[:, (k + 1) % 3]
+        side = b - a
+        length = np.maximum(np.einsum("ni,ni->n", side, side), 1e-300)
+        part = np.clip(np.einsum("ni,ni->n", points - a, side) / length, 0.0, 1.0)
+        on_side = a + part[:, None] * side
+        away = np.linalg.norm(points - on_side, axis=1)
+        nearer = away < distance
+        best, distance = np.where(nearer[:, None], on_side, best), np.where(nearer, away, distance)
+    return np.asarray(best)
+
+
+def _is_inside(
+    points: FloatArray, corners: FloatArray, normal: FloatArray
+) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """Which points of the planes of triangles lie within them."""
+    inside = np.ones(points.shape[0], dtype=bool)
+    for k in range(3):
+        a, b = corners[:, k], corners[:, (k + 1) % 3]
+        inside &= np.einsum("ni,ni->n", np.cross(b - a, points - a), normal) >= 0.0
+    return inside

@@ -1,0 +1,53 @@
+"""Metrics of a state of a mesh, in the plane or in space."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gyrify.mesh import Mesh
+from gyrify.mesh.mesh import FloatArray
+from gyrify.metrics import Measures
+from gyrify.metrics.measure import measure_valid
+
+if TYPE_CHECKING:
+    from gyrify.config.run_sections import Metrics
+    from gyrify.metrics.measure_surface import DeformedSurface
+
+
+def measured(mesh: Mesh, points: FloatArray, chosen: Metrics, *, earlier: bool = False) -> Measures:
+    """Every metric of a state.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The reference mesh.
+    points : (n_points, n_dim) float array
+        Deformed coordinates [mm].
+    chosen : Metrics
+        Section of the configuration.
+    earlier : bool
+        Whether by the rules of gyrify 0.1.0; see `gyrify.metrics.measure.measure_valid`.
+    """
+    if mesh.n_dim == 3:
+        return Measures.of(surface_of(mesh, points, chosen))
+    lengths = (chosen.closing_radius, chosen.gyrus_prominence, chosen.samples)
+    return measure_valid(points[mesh.contour], points[mesh.interface], *lengths, mesh.period, earlier=earlier)
+
+
+def surface_of(mesh: Mesh, points: FloatArray, chosen: Metrics) -> DeformedSurface:
+    """Outer surface and interface of a state in space; parameters as of `measured`."""
+    from gyrify.metrics.measure_surface import DeformedSurface
+
+    periods = None if mesh.period is None or mesh.period_y is None else (mesh.period, mesh.period_y)
+    return DeformedSurface(
+        points[mesh.contour],
+        np.searchsorted(mesh.contour, mesh.faces),
+        points[mesh.interface],
+        np.searchsorted(mesh.interface, mesh.interface_faces),
+        chosen.closing_radius,
+        chosen.gyrus_prominence,
+        periods,
+        mesh.points[mesh.contour],
+    )
