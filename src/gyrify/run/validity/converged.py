@@ -111,7 +111,8 @@ def convergence(config: Config, gi_closing: float, *, is_complete: bool) -> dict
 def command(config: Config) -> str:
     """Command that checks the mesh, in the folder of the run.
 
-    In space, a run on a mesh twice as fine to compare with. In the plane, its finest level is at least twice as fine as the run's mesh, as far as `mesh.refine` allows.
+    Its finest level is at least twice as fine as the run's mesh, as far as `mesh.refine` allows. In space it
+    is a run on a mesh twice as fine, to compare with.
     """
     if config.geometry.n_dim == 3:
         return f"gyrify run config.toml --set mesh.refine={config.mesh.refine + 1}"
