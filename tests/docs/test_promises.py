@@ -27,7 +27,7 @@ def test_a_material_is_named_in_its_own_file_in_the_list_and_as_the_default_alon
     defaults = {"config/physics_sections.py"}
     defaults |= {f"energy/{name}.py" for name in ("elastic", "axial", "mean_dilatation")}
     own = {"physics/materials/neo_hookean.py", "physics/materials/__init__.py"}
-    assert naming == own | defaults | {"run/validity/expected.py"}
+    assert naming == own | defaults | {"run/validity/exact_bodies.py"}
 
 
 def test_contact_is_planar_and_the_plan_says_so() -> None:

@@ -11,7 +11,7 @@ from gyrify.config import Config
 from gyrify.model import meshing
 from gyrify.model.tissue import Tissue
 from gyrify.report.outputs import write_outputs
-from gyrify.run import measuring
+from gyrify.run import body_measures
 
 
 class Counter:
@@ -30,7 +30,7 @@ def test_a_run_and_its_files_build_one_mesh_and_measure_each_state_once(
 ) -> None:
     # with node jitter the search for the onset has a perfect slice of its own
     config = tiny.with_overrides({"stability.detect": False})
-    meshes, measured = Counter(meshing._built), Counter(measuring.measure_valid)
+    meshes, measured = Counter(meshing._built), Counter(body_measures.measure_valid)
     parsed = Counter(Config.from_toml)
     tissues = []
     initialise = Tissue.__init__
@@ -40,7 +40,7 @@ def test_a_run_and_its_files_build_one_mesh_and_measure_each_state_once(
         initialise(self, *arguments)
 
     monkeypatch.setattr(meshing, "_built", meshes)
-    monkeypatch.setattr(measuring, "measure_valid", measured)
+    monkeypatch.setattr(body_measures, "measure_valid", measured)
     monkeypatch.setattr(Config, "from_toml", parsed)
     monkeypatch.setattr(Tissue, "__init__", count)
     history = gyrify.simulate(config, tmp_path / "run")

@@ -14,7 +14,7 @@ import gyrify.run.onset.smooth as smooth
 from gyrify.config import Config
 from gyrify.errors import SolveError
 from gyrify.metrics import Measures
-from gyrify.metrics.quantities import MEASURED
+from gyrify.metrics.quantities import measured_in
 from gyrify.run.onset.crossing import LowestEigenvalue, Root
 from gyrify.run.onset.smooth import SmoothBranch, SmoothState
 from gyrify.solve.result import Result, Solution, Stats
@@ -150,7 +150,7 @@ def visible(index: Curve, parameter: str = "growth.ratio") -> tuple[VisibleScan,
     """Scan of an index that is known; its gyri are the hundredfold of the value."""
     scan = VisibleScan(Config(), parameter, 1.1)
     asked: list[float] = []
-    measured = dict.fromkeys((quantity.attribute for quantity in MEASURED), 0.0)
+    measured = dict.fromkeys((quantity.attribute for quantity in measured_in(2)), 0.0)
 
     def run(value: float) -> Measures:
         asked.append(value)

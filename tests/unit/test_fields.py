@@ -16,13 +16,13 @@ from gyrify.physics.stress import first_piola
 from gyrify.store import History
 from gyrify.store.fields import (
     CONTOUR_FIELDS,
-    POINT_FIELDS,
     UNITS,
     FieldMaker,
     StateFields,
     curvature,
     fields,
 )
+from gyrify.store.state_fields import POINT_FIELDS
 
 SMALL = {"mesh.n_around": 48, "mesh.n_layers": 6, "mesh.n_cortex_layers": 2}
 

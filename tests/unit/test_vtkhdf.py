@@ -11,7 +11,8 @@ import pytest
 from gyrify.errors import HistoryError
 from gyrify.store import History
 from gyrify.store import vtkhdf as module
-from gyrify.store.fields import POINT_FIELDS, fields
+from gyrify.store.fields import fields
+from gyrify.store.state_fields import POINT_FIELDS
 from gyrify.store.vtkhdf import Layout, write_vtkhdf, written_states
 
 # Relative error of rounding to single precision, then to 16 significant bits.

@@ -18,12 +18,16 @@ from gyrify.metrics.surface import (
     face_areas,
     laplacian,
     mean_curvature,
+    roughness,
     vertex_areas,
 )
 from gyrify.metrics.surface_closing import SurfaceClosing
 from gyrify.metrics.surface_folds import SurfaceFolds
 from gyrify.metrics.surface_pairs import crosses_itself, distances_to, smallest_gap
 from gyrify.metrics.surface_sections import section_index, sections
+
+# Wavelength that is smoothed away by half, over the radius of the closing: about the size of the body.
+_CUTOFF = 8.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,13 +138,18 @@ class DeformedSurface:
 
     @cached_property
     def wavelength(self) -> float:
-        """Wavelength 2 pi rms(d) / rms(grad d) of the depth d [mm]; 0 without folds."""
+        """Wavelength 2 pi rms(h) / rms(grad h) of the height h above the smoothed surface [mm].
+
+        0 without folds.
+        """
         if self.folds.fundi.size == 0:
             return 0.0
         n, areas = self.points.shape[0], vertex_areas(self.points.shape[0], self.faces, self.corners)
-        varied = self.depth - areas @ self.depth / areas.sum()
-        slope = varied @ (laplacian(n, self.faces, self.corners) @ varied)
-        return float(2.0 * np.pi * np.sqrt(areas @ varied**2 / slope))
+        origin = self.reference if self.periods is not None else None
+        cutoff = _CUTOFF * self.closing_radius
+        height = roughness(self.points, self.faces, self.corners, cutoff, origin)
+        slope = height @ (laplacian(n, self.faces, self.corners) @ height)
+        return float(2.0 * np.pi * np.sqrt(areas @ height**2 / slope))
 
     @cached_property
     def crosses_itself(self) -> bool:

@@ -58,7 +58,8 @@ class Measures:
     mean_curvature : float
         In space, mean of the absolute mean curvature [1/mm].
     wavelength : float
-        In space, length of the wave that varies as the depth does [mm]; 0 without folds.
+        In space, length of the wave that varies as the height above the smoothed surface does [mm]; 0 without
+        folds.
     """
 
     gi_hull: float

@@ -76,6 +76,11 @@ class Quantity:
         return self.measure if n_dim == 2 else self.in_space
 
     @property
+    def is_measured(self) -> bool:
+        """Whether it is measured of a state; others are known of the run."""
+        return self.measure is not None or self.in_space is not None
+
+    @property
     def key(self) -> str:
         """Its name in ``metrics.csv`` and ``results.parquet``."""
         return self.path.replace(".", "_")
@@ -196,7 +201,7 @@ MEASURED: Final[list[Quantity]] = [
         _in("notebook"), in_results=False, in_space=lambda s: s.mean_curvature,
     ),
     Quantity(
-        "wavelength_mm", float, "mm", "wavelength", 1, "Of the wave that varies as the depth of sulci does",
+        "wavelength_mm", float, "mm", "wavelength", 1, "Of the height above the smoothed surface",
         _in("run", "notebook"), name="wavelength", in_results=False, in_space=lambda s: s.wavelength,
     ),
 ]  # fmt: skip
@@ -265,9 +270,9 @@ def by_key() -> dict[str, Quantity]:
     return {quantity.key: quantity for quantity in quantities()}
 
 
-def shown_in(place: Place) -> list[Quantity]:
-    """What is shown in a place, in order."""
-    found = [quantity for quantity in quantities() if place in quantity.shown]
+def shown_in(place: Place, n_dim: int = 2) -> list[Quantity]:
+    """What is shown in a place of a body in the plane (2) or in space (3), in order."""
+    found = [q for q in quantities() if place in q.shown and (q.measured_by(n_dim) or not q.is_measured)]
     return sorted(found, key=lambda quantity: not quantity.leads)
 
 

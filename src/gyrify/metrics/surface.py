@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csr_array
+from scipy.sparse import coo_array, csr_array, diags_array
+from scipy.sparse.linalg import splu
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -75,6 +76,32 @@ def mean_curvature(points: FloatArray, faces: IntArray, corners: FloatArray) -> 
     normals = vertex_normals(n, faces, corners)
     areas = vertex_areas(n, faces, corners)
     return np.asarray(np.einsum("ni,ni->n", pull, normals) / (2.0 * areas))
+
+
+def roughness(
+    points: FloatArray, faces: IntArray, corners: FloatArray, cutoff: float, origin: FloatArray | None = None
+) -> FloatArray:
+    """(n_points,) height above the smoothed surface, outwards [mm]; its mean over the surface is zero.
+
+    The smoothed positions solve (M + t K) y = M x with the lumped areas M and the Laplacian K, so that a wave
+    of length L keeps 1 / (1 + (cutoff / L)^2) of its height.
+
+    Parameters
+    ----------
+    points, faces, corners
+        As of `mean_curvature`.
+    cutoff : float
+        Wavelength of which one half is smoothed away [mm].
+    origin : (n_points, 3) float array, optional
+        What is taken from the positions of a periodic surface, which then are displacements.
+    """
+    n, areas = points.shape[0], vertex_areas(points.shape[0], faces, corners)
+    mass = diags_array(areas)
+    smoothing = splu((mass + (cutoff / (2.0 * np.pi)) ** 2 * laplacian(n, faces, corners)).tocsc())
+    x = points if origin is None else points - origin
+    rest = x - smoothing.solve(areas[:, None] * x)
+    height = np.einsum("ni,ni->n", rest, vertex_normals(n, faces, corners))
+    return np.asarray(height - areas @ height / areas.sum())
 
 
 def sampled(corners: FloatArray, spacing: float) -> FloatArray:

@@ -52,8 +52,7 @@ def section(corners: FloatArray, axis: int, place: float) -> shapely.Geometry:
         rows = np.arange(crossing.shape[0])
         second = np.where(above[:, k], j, k)
         h1, h2 = height[rows, first], height[rows, second]
-        with np.errstate(invalid="ignore", divide="ignore"):
-            part = (h1 / (h1 - h2))[:, None]
+        part = (h1 / np.where(split, h1 - h2, 1.0))[:, None]
         a, b = crossing[rows, first][:, others], crossing[rows, second][:, others]
         points[split, k] = (a + part * (b - a))[split]
     lines = points[~np.isnan(points[:, :, 0])].reshape(-1, 2, 2)

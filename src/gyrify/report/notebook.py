@@ -130,8 +130,7 @@ def _lines(summary: dict[str, Any]) -> list[tuple[str, str]]:
         ("status", " ".join(filter(None, (summary["status"], summary["reason"], summary["advice"])))),
         *(
             (_label(quantity, values), _number(values[quantity.key]))
-            for quantity in shown_in("notebook")
-            if quantity.key in values
+            for quantity in shown_in("notebook", 2 if "gi_closing" in values else 3)
         ),
         ("mesh", summary["converged"]["sentence"]),
         *(("warning", sentence) for sentence in summary["warnings"]),

@@ -11,7 +11,7 @@ from gyrify.base.arguments import Pathlike, as_path
 from gyrify.errors import HistoryError
 from gyrify.report.figures import folded_figure, save_figure
 from gyrify.report.mode_figure import mode_figure, wave_words
-from gyrify.run.measured import surface_of
+from gyrify.run.body_measures import surface_of
 from gyrify.run.summary import summarise, write_metrics, write_summary
 from gyrify.run.validity.converged import mark
 from gyrify.solve.stability import Onset

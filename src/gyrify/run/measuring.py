@@ -13,7 +13,7 @@ from gyrify.base.arguments import real_number
 from gyrify.config import Config
 from gyrify.config.run_sections import Metrics
 from gyrify.metrics import Measures
-from gyrify.run.measured import measured
+from gyrify.run.body_measures import measured
 from gyrify.run.validity.lengths import check_lengths
 from gyrify.store.files import whole_file
 from gyrify.store.history import History

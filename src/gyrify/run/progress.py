@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from gyrify.metrics.gyrification import index_of
-from gyrify.run.measured import surface_of
+from gyrify.run.body_measures import surface_of
 
 if TYPE_CHECKING:
     from gyrify.run.running import Observer, Progress

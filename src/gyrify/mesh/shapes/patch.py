@@ -11,8 +11,8 @@ from gyrify.errors import MeshError
 from gyrify.mesh.nested_surface import NestedSurface, periodic_sheet
 from gyrify.mesh.shapes.shape import FloatArray
 
-# Squares along the shorter period of the coarsest level: wide cells suit the deep white matter.
-_FEWEST = 2
+# Squares along the shorter period of the coarsest level: with two, a cell and its image would be one.
+_FEWEST = 4
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Patch:
 
     def surface(self, edge: float, n_halvings: int) -> NestedSurface:
         """See `SolidShape`: squares of side ``edge``, as nearly as an even number of them allows."""
-        finest = [max(period / edge, 2 * _FEWEST) for period in self.periods]
+        finest = [max(period / edge, _FEWEST) for period in self.periods]
         # How often halving leads from a coarse sheet to this one.
         own = max(int(np.floor(np.log2(min(finest) / _FEWEST))), 0)
         n_x, n_y = (max(2 * round(n / 2**own / 2), _FEWEST) for n in finest)

@@ -10,7 +10,7 @@ import numpy as np
 
 from gyrify.metrics import Measures
 from gyrify.model.slice import Slice
-from gyrify.run.measured import measured
+from gyrify.run.body_measures import measured
 from gyrify.solve.newton import minimise
 from gyrify.solve.relaxation import KEPT, Relaxation
 from gyrify.solve.result import Result

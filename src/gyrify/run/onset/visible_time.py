@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 from gyrify.mesh import Mesh
 from gyrify.mesh.mesh import FloatArray
 from gyrify.metrics.gyrification import index_of
-from gyrify.run.measured import measured, surface_of
+from gyrify.run.body_measures import measured, surface_of
 
 if TYPE_CHECKING:
     from gyrify.config.run_sections import Metrics

@@ -119,6 +119,10 @@ def contour_spacing(config: Config) -> float:
     return math.pi * (3 * (a + b) - math.sqrt((3 * a + b) * (a + 3 * b))) / n_points
 
 
+def _spacing_over_thickness(config: Config) -> float:
+    return contour_spacing(config) / config.geometry.cortical_thickness
+
+
 def _drag(config: Config) -> float | None:
     return None if config.dissipation.kind == "none" else config.dissipation.number
 
@@ -233,8 +237,18 @@ RANGES: Final[tuple[Range, ...]] = (
         1.5,
         "",
         "0.7 for the standard slice of Wang 2019, 1.4 for its thinnest cortex",
-        "Raise mesh.n_around, in space lower mesh.edge_length.",
-        lambda config: contour_spacing(config) / config.geometry.cortical_thickness,
+        "Raise mesh.n_around.",
+        lambda config: _spacing_over_thickness(config) if config.geometry.n_dim == 2 else None,
+    ),
+    Range(
+        "edge of the outer surface over the thickness of the cortex",
+        "meshes that resolve folds at all",
+        0.0,
+        2.0,
+        "",
+        "1.6 in a public mesh of BrainGrowth, which is not converged",
+        "Lower mesh.edge_length.",
+        lambda config: _spacing_over_thickness(config) if config.geometry.n_dim == 3 else None,
     ),
 )
 
