@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from gyrify.energy.contact import ContactSurface
+import gyrify
+from gyrify.config import Config
+from gyrify.errors import ConfigError
 
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src" / "gyrify"
@@ -30,8 +31,15 @@ def test_a_material_is_named_in_its_own_file_in_the_list_and_as_the_default_alon
     assert naming == own | defaults | {"run/validity/exact_bodies.py"}
 
 
-def test_contact_is_planar_and_the_plan_says_so() -> None:
-    assert "**contact\nin space does not exist in gyrify**" in page("planning-3d.md")
-    corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-    with pytest.raises(ValueError, match="could not be broadcast"):
-        ContactSurface(corners, np.arange(4))
+def test_what_is_not_built_in_space_is_refused() -> None:
+    said = page("space.md").split("## What is not built yet")[1]
+    assert "`stability.follow_branch`" in said
+    assert "quadratic tetrahedra" in said
+    for refused in (
+        {"stability.follow_branch": True, "dissipation.kind": "none"},
+        {"mesh.element": "quadratic"},
+    ):
+        with pytest.raises(ConfigError, match="in space"):
+            Config().with_overrides({"geometry.shape": "sphere", **refused})
+    with pytest.raises(ConfigError, match="in space"):
+        gyrify.converge(Config().with_overrides({"geometry.shape": "sphere"}))

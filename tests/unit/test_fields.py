@@ -10,6 +10,7 @@ import pytest
 from gyrify.config import Config
 from gyrify.config.run_sections import ALL_FIELDS
 from gyrify.errors import HistoryError
+from gyrify.metrics.curvature import curvature
 from gyrify.model.slice import Slice
 from gyrify.physics.materials import NEO_HOOKEAN
 from gyrify.physics.stress import first_piola
@@ -18,11 +19,9 @@ from gyrify.store.fields import (
     CONTOUR_FIELDS,
     UNITS,
     FieldMaker,
-    StateFields,
-    curvature,
     fields,
 )
-from gyrify.store.state_fields import POINT_FIELDS
+from gyrify.store.state_fields import POINT_FIELDS, StateFields
 
 SMALL = {"mesh.n_around": 48, "mesh.n_layers": 6, "mesh.n_cortex_layers": 2}
 
@@ -246,5 +245,5 @@ def test_fields_of_a_state_that_does_not_exist_are_refused(folded: History):
 
 
 def test_only_the_fields_asked_for_are_computed(folded: History, monkeypatch):
-    monkeypatch.setattr("gyrify.store.fields.distance_to_line", SimpleNamespace())
+    monkeypatch.setattr("gyrify.store.state_fields.distance_to_line", SimpleNamespace())
     assert list(fields(folded, -1, ["J"])) == ["J"]

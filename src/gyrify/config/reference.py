@@ -31,14 +31,16 @@ Lengths are in mm, stresses in Pa, growth time in the units of the source.
 - Types are strict: `true` is not 1, `"3"` is not 3, and 216.5 is not a whole number. Not-a-number and
   infinity are refused. Unknown keys are refused with the nearest known one.
 - Further conditions tie keys together: `mesh.n_cortex_layers` is below `mesh.n_layers`; the cortex is thinner
-  than 0.95 of the narrowest wall (b · (1 − `hole_fraction`) for ellipse and circle, `depth` for the strip);
+  than 0.95 of the narrowest wall (the shortest axis times 1 − `hole_fraction`, `depth` for strip and patch);
   at most 4 million cells; `growth.rate` × `growth.duration` is at most 10; `solver.min_increment` is at most
   1/`solver.increments`; `stability.follow_branch` needs `stability.detect` and no dissipation;
   `growth.out_of_plane = "generalised"` goes with neither `mean_dilatation` cells nor `kelvin_voigt`;
-  `mesh.refine_cortex` is at most the number of white layers.
+  `mesh.refine_cortex` is at most the number of white layers. What has no meaning in the plane or in space
+  ([Bodies in space](space.md)) is refused there when it is not the default.
 - `metrics.closing_radius` and `metrics.gyrus_prominence` scale with the body when they are not given. The
   scale of a body is its mean radius over that of the standard slice, √(`geometry.area` / 4069 mm²), for
-  ellipse and circle; for a strip, whose folds have no other length, `geometry.cortical_thickness` / 1.5 mm.
+  ellipse and circle, ∛(abc) / 35.99 mm for sphere and ellipsoid; for a strip or a patch, whose folds have no
+  other length, `geometry.cortical_thickness` / 1.5 mm.
   The standard slice has 10 mm and 0.3 mm. The same brain in another unit of length so has the same indices.
   A stored `config.toml` states every number: a stored run keeps the lengths that it was measured with.
 - The configuration hash is the SHA-256 of the canonical JSON (sorted keys, no spaces, shortest exact floats)

@@ -134,7 +134,18 @@ class Mesh:
         return self.unwrapped(self.cells)
 
     def unwrapped(self, simplices: IntArray) -> FloatArray:
-        """(n, n_nodes, n_dim) reference coordinates of cells or faces, those of one next to each other."""
+        """Reference coordinates of cells or faces, those of one next to each other.
+
+        Parameters
+        ----------
+        simplices : (n, n_nodes) int array
+            Points of each.
+
+        Returns
+        -------
+        (n, n_nodes, n_dim) float array
+            [mm].
+        """
         corners = self.points[simplices]
         for axis, period in enumerate((self.period, self.period_y)):
             if period is not None:

@@ -121,9 +121,13 @@ class DeformedSurface:
 
     @cached_property
     def thickness(self) -> tuple[float, float]:
-        """Mean cortical thickness at crowns and at fundi, or all over without folds [mm]."""
-        all_over = np.arange(self.points.shape[0])
-        places = (self.folds.crowns, self.folds.fundi) if self.folds.fundi.size else (all_over, all_over)
+        """Mean cortical thickness on gyri and at fundi, or all over without folds [mm].
+
+        Crowns are ridges: what lies no deeper below the closing than the prominence counts.
+        """
+        shallow = np.flatnonzero(self.depth <= self.gyrus_prominence)
+        fundi = self.folds.fundi if self.folds.fundi.size else shallow
+        places = (shallow, fundi)
         inner = self.inner[self.inner_faces]
         if self.periods is not None:
             step = inner[:, :, :2] - inner[:, :1, :2]
