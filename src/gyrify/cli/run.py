@@ -199,11 +199,12 @@ def _report(summary: dict[str, Any], folder: Path) -> None:
     from gyrify.config.words import decimals
 
     gi, deepest = summary["gi"], summary["sulcal_depth_mm"]["max"]
-    sulci = f"sulci up to {deepest:.{decimals([deepest], 2)}f} mm deep" if summary["n_gyri"] else "no sulci"
+    n_gyri = summary["n_gyri"]
+    sulci = f"sulci up to {deepest:.{decimals([deepest], 2)}f} mm deep" if n_gyri else "no sulci"
     kind, indices = ("GI by area", gi["area"]) if "area" in gi else ("GI", gi)
     say(
         f"{kind} {indices['closing']:.3f} (closing of {gi['closing_radius_mm']:.4g} mm), "
-        f"{indices['hull']:.3f} (hull); {summary['n_gyri']} gyri; {sulci}."
+        f"{indices['hull']:.3f} (hull); {n_gyri} {'gyrus' if n_gyri == 1 else 'gyri'}; {sulci}."
     )
     say(f"{summary['converged']['sentence']} Check: {_check_command(summary, folder)}")
     solver = summary["solver"]
