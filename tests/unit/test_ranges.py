@@ -49,6 +49,11 @@ OUTSIDE = [
         "spacing of the contour's points",
         "n_around",
     ),
+    (
+        {"geometry.shape": "sphere", "mesh.edge_length": 5.0},
+        "edge of the outer surface over the thickness of the cortex = 3.33",
+        "mesh.edge_length",
+    ),
 ]
 
 
