@@ -8,8 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from gyrify.errors import MeshError
-from gyrify.mesh.shapes.shape import FloatArray, IntArray
+from gyrify.mesh.shapes.shape import FloatArray, IntArray, require_white_matter
 from gyrify.mesh.symmetry import Mirror, symmetric_field
 
 
@@ -41,12 +40,7 @@ class Ellipse:
     n_mirrors: ClassVar[int] = 2
 
     def __post_init__(self) -> None:
-        T, wall = self.cortical_thickness, self.narrowest_wall
-        if not 0.0 < T < wall:
-            raise MeshError(
-                f"geometry.cortical_thickness = {T:g} mm leaves no white matter: the wall is {wall:.4g} mm.",
-                f"Choose a thickness between 0 and {0.95 * wall:.4g} mm.",
-            )
+        require_white_matter(self.cortical_thickness, self.narrowest_wall)
 
     @property
     def narrowest_wall(self) -> float:

@@ -7,9 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from gyrify.errors import MeshError
 from gyrify.mesh.nested_surface import NestedSurface, icosphere, nearest_frequency
-from gyrify.mesh.shapes.shape import FloatArray
+from gyrify.mesh.shapes.shape import FloatArray, require_white_matter
 
 
 @dataclass(frozen=True)
@@ -38,12 +37,7 @@ class Ellipsoid:
     periods: ClassVar[None] = None
 
     def __post_init__(self) -> None:
-        T, wall = self.cortical_thickness, self.narrowest_wall
-        if not 0.0 < T < wall:
-            raise MeshError(
-                f"geometry.cortical_thickness = {T:g} mm leaves no white matter: the wall is {wall:.4g} mm.",
-                f"Choose a thickness between 0 and {0.95 * wall:.4g} mm.",
-            )
+        require_white_matter(self.cortical_thickness, self.narrowest_wall)
 
     @property
     def is_solid(self) -> bool:

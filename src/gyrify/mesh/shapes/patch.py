@@ -7,9 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from gyrify.errors import MeshError
 from gyrify.mesh.nested_surface import NestedSurface, periodic_sheet
-from gyrify.mesh.shapes.shape import FloatArray
+from gyrify.mesh.shapes.shape import FloatArray, require_white_matter
 
 # Squares along the shorter period of the coarsest level: with two, a cell and its image would be one.
 _FEWEST = 4
@@ -42,12 +41,7 @@ class Patch:
     is_solid: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        T, height = self.cortical_thickness, self.height
-        if not 0.0 < T < height:
-            raise MeshError(
-                f"geometry.cortical_thickness = {T:g} mm leaves no white matter in {height:.4g} mm.",
-                f"Choose a thickness between 0 and {0.95 * height:.4g} mm, or a larger geometry.depth.",
-            )
+        require_white_matter(self.cortical_thickness, self.height, is_flat=True)
 
     @property
     def periods(self) -> tuple[float, float]:

@@ -8,6 +8,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from gyrify.errors import MeshError
 from gyrify.mesh.symmetry import Mirror
 
 FloatArray = NDArray[np.float64]
@@ -71,3 +72,30 @@ class Shape(Protocol):
     ) -> tuple[FloatArray, tuple[Mirror, ...]]:
         """Points that are exactly their own mirror image, by the images about each line; the lines."""
         ...
+
+
+def require_white_matter(thickness: float, wall: float, *, is_flat: bool = False) -> None:
+    """Refuse a cortex that takes all of a wall.
+
+    Parameters
+    ----------
+    thickness : float
+        Of the cortex [mm].
+    wall : float
+        Narrowest place between the outer contour or surface and the other end of the wall [mm].
+    is_flat : bool
+        Whether the wall is the depth of a strip or a patch.
+
+    Raises
+    ------
+    MeshError
+        If no white matter is left.
+    """
+    if 0.0 < thickness < wall:
+        return
+    place = f" in {wall:.4g} mm" if is_flat else f": the wall is {wall:.4g} mm"
+    deeper = ", or a larger geometry.depth" if is_flat else ""
+    raise MeshError(
+        f"geometry.cortical_thickness = {thickness:g} mm leaves no white matter{place}.",
+        f"Choose a thickness between 0 and {0.95 * wall:.4g} mm{deeper}.",
+    )

@@ -8,8 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from gyrify.errors import MeshError
-from gyrify.mesh.shapes.shape import FloatArray, IntArray
+from gyrify.mesh.shapes.shape import FloatArray, IntArray, require_white_matter
 from gyrify.mesh.symmetry import Mirror
 
 
@@ -42,12 +41,7 @@ class PeriodicStrip:
     n_mirrors: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
-        T, height = self.cortical_thickness, self.height
-        if not 0.0 < T < height:
-            raise MeshError(
-                f"geometry.cortical_thickness = {T:g} mm leaves no white matter in {height:.4g} mm.",
-                f"Choose a thickness between 0 and {0.95 * height:.4g} mm, or a larger geometry.depth.",
-            )
+        require_white_matter(self.cortical_thickness, self.height, is_flat=True)
 
     @property
     def period(self) -> float:
