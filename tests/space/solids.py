@@ -33,7 +33,7 @@ BRAIN = {
     "growth.ratio": 1e4,
     "material.stiffness_ratio": 3.0,
     "dissipation.number": 0.2,
-    "solver.increments": 20,
+    "solver.increments": 14,
     "stability.detect": False,
 }
 PATCH = {
