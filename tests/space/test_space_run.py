@@ -48,11 +48,15 @@ def test_it_folds_without_a_crossing(folder: Path) -> None:
     assert summary["surface_area_mm2"] > 1.3 * 4.0 * np.pi * 20.5**2
     assert summary["wavelength_mm"] > 5.0
     assert summary["solver"]["contact_library"] == "ipctk"
+    assert summary["units"]["solver_residual"] == "Pa mm²"
 
 
 def test_verify_finds_nothing(folder: Path) -> None:
     found = verify(folder)
     assert [check.sentence for check in found.checks if not check.passed] == []
+    told = {check.name: check.sentence for check in found.checks}
+    assert "Pa mm³" in told["energy balance"]
+    assert "[Pa mm²]" in told["residual"]
     assert {check.name for check in found.checks} >= {"energy balance", "simple contour", "path", "volume"}
 
 

@@ -125,7 +125,7 @@ class DeformedSurface:
 
         Crowns are ridges: what lies no deeper below the closing than the prominence counts.
         """
-        shallow = np.flatnonzero(self.depth <= self.gyrus_prominence)
+        shallow = np.flatnonzero(self.depth <= self.depth.min() + self.gyrus_prominence)
         fundi = self.folds.fundi if self.folds.fundi.size else shallow
         places = (shallow, fundi)
         inner = self.inner[self.inner_faces]

@@ -22,3 +22,13 @@ def unit_of(name: str) -> str:
         return extra(kind.model_fields[key], "unit")
     quantity = by_key().get(name)
     return quantity.unit if quantity is not None else ""
+
+
+def force_unit(n_dim: int) -> str:
+    """Unit of a nodal force: per thickness in the plane (2), a stress times an area in space (3)."""
+    return "Pa mm" if n_dim == 2 else "Pa mm²"
+
+
+def energy_unit(n_dim: int) -> str:
+    """Unit of an energy, likewise."""
+    return "Pa mm²" if n_dim == 2 else "Pa mm³"

@@ -13,6 +13,7 @@ from gyrify.config import Config
 from gyrify.errors import ConfigError, HistoryError
 from gyrify.run.reevaluation import Increment, reevaluated
 from gyrify.run.summary import metrics_rows
+from gyrify.run.units import energy_unit, force_unit
 from gyrify.store.derived import read_summary, require_digest
 from gyrify.store.folder import JOURNAL
 from gyrify.store.history import History
@@ -67,10 +68,12 @@ def verify(run: str | Path) -> Verification:
     if increments:
         volumes = list(_check_volumes(increments))
         if all(check.passed for check in volumes):  # the energy of an inverted cell is infinite
-            checks += _check_forces(history.slice.stepping.criterion.force, increments)
+            checks += _check_forces(
+                history.slice.stepping.criterion.force, increments, force_unit(history.mesh.n_dim)
+            )
         checks += volumes
         if all(check.passed for check in volumes):
-            checks.append(_check_balance(increments))
+            checks.append(_check_balance(increments, energy_unit(history.mesh.n_dim)))
         checks += _check_symmetry(history)
     if history.config.contact.enabled:
         checks += _check_contact(increments, rows, _jumps(history))
@@ -133,14 +136,14 @@ def _check_hash(history: History, summary: dict[str, Any] | None) -> Check:
     return Check("result hash", True, f"The journal and summary.json agree on {found[:12]}.")
 
 
-def _check_forces(tolerance: float, increments: list[Increment]) -> Iterator[Check]:
-    """Bounds that each increment must keep by itself; ``tolerance`` is that of the residual [Pa mm]."""
+def _check_forces(tolerance: float, increments: list[Increment], unit: str) -> Iterator[Check]:
+    """Bounds that each increment must keep by itself; ``tolerance`` is that of the residual, a force."""
     margin = RESIDUAL_MARGIN * tolerance
     residuals = [increment.residual for increment in increments]
     gaps = [abs(increment.residual - increment.stored_residual) for increment in increments]
     rises = [increment.rise for increment in increments]
-    what = "The largest difference between a stored and a recomputed residual [Pa mm]"
-    yield _at_most("residual", residuals, tolerance + margin, "The largest nodal force [Pa mm]")
+    what = f"The largest difference between a stored and a recomputed residual [{unit}]"
+    yield _at_most("residual", residuals, tolerance + margin, f"The largest nodal force [{unit}]")
     yield _at_most("stored residual", gaps, margin, what)
     yield _at_most("descent", rises, DESCENT_BOUND, "The largest relative rise of the energy")
 
@@ -208,7 +211,7 @@ def _above_zero(
     return Check(name, values[at] > 0.0, sentence, values[at], 0.0)
 
 
-def _check_balance(increments: list[Increment]) -> Check:
+def _check_balance(increments: list[Increment], unit: str) -> Check:
     """Work of growth against the energies that it went into."""
     work = math.fsum(abs(i.work) for i in increments)
     if work == 0.0:
@@ -222,7 +225,7 @@ def _check_balance(increments: list[Increment]) -> Check:
     bound = max(ENERGY_BOUND, shares["work_error"])
     outside = f"{shares['external']:.2%} in the surroundings, " if any(i.external for i in increments) else ""
     sentence = (
-        f"Of the work of growth ({work:.4g} Pa mm²) {shares['stored']:.2%} is stored elastically, "
+        f"Of the work of growth ({work:.4g} {unit}) {shares['stored']:.2%} is stored elastically, "
         f"{shares['contact']:.2%} in contact, {outside}{shares['dissipated']:.2%} dissipated; the increments "
         f"create {created:.2%} and lose {lost:.2%} (error of the work {shares['work_error']:.2g}, allowed to "
         f"create {bound:.2g})."
