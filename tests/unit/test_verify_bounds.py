@@ -28,7 +28,7 @@ FINE = Increment(
 def passed(name: str, **changes: float) -> bool:
     """Whether the check of that name lets three increments pass, the middle one of them changed."""
     increments = [FINE, replace(FINE, **changes), FINE]  # type: ignore[arg-type]
-    found = (*_check_forces(TOLERANCE, increments), *_check_volumes(increments))
+    found = (*_check_forces(TOLERANCE, increments, "N/mm"), *_check_volumes(increments))
     checks = {check.name: check for check in found}
     others = {key: check for key, check in checks.items() if key != name}
     assert len(others) == 4
@@ -59,7 +59,7 @@ def test_each_bound_of_an_increment_holds_from_both_sides(
 
 def balance(stored: float, work_error: float = 0.0) -> Check:
     """Of one increment whose defect is that of its stored energy, among nine that are in balance."""
-    return _check_balance([replace(FINE, stored=stored, work_error=work_error), *[FINE] * 9])
+    return _check_balance([replace(FINE, stored=stored, work_error=work_error), *[FINE] * 9], "uJ/mm")
 
 
 def test_energy_may_be_lost_but_not_created() -> None:
@@ -80,7 +80,7 @@ def test_what_is_created_may_be_as_much_as_the_work_of_growth_is_uncertain_by() 
 
 def test_what_one_increment_loses_makes_up_for_nothing_that_another_creates() -> None:
     less, more = replace(FINE, stored=30.0), replace(FINE, stored=90.0)
-    assert not _check_balance([less, more]).passed
+    assert not _check_balance([less, more], "uJ/mm").passed
 
 
 ROW: dict[str, Any] = {"self_intersecting": False, "min_gap_mm": 0.1}
