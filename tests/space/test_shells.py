@@ -145,7 +145,7 @@ def test_a_cortex_without_white_matter_is_refused(shape: Any) -> None:
         ({"geometry.shape": "sphere", "geometry.hole_fraction": 0.05}, "or 0, a solid body"),
         ({"geometry.shape": "sphere", "mesh.split": "one"}, "mesh.split = \"one\" is not allowed in space"),
         ({"geometry.shape": "sphere", "growth.out_of_plane": "none"}, "no meaning there"),
-        ({"geometry.shape": "sphere", "mesh.element": "quadratic"}, "no such tetrahedra yet"),
+        ({"geometry.shape": "sphere", "mesh.inversion_resistance": 0.1}, "it is built for triangles"),
         ({"geometry.shape": "patch", "boundary.clamp": "none"}, "its lower side stands for tissue"),
         ({"mesh.edge_length": 2.0}, "in the plane"),
         ({"growth.transition": 0.2}, "a step has no width"),

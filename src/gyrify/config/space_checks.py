@@ -54,7 +54,6 @@ def meaning(config: Config) -> str:
         where = "in space"
         given = {
             "mesh.split": (mesh.split, "alternating"),
-            "mesh.inversion_resistance": (mesh.inversion_resistance, 0.0),
             "growth.out_of_plane": (growth.out_of_plane, "blocked"),
             "growth.out_of_plane_exponent": (growth.out_of_plane_exponent, 1.0),
         }
@@ -71,10 +70,10 @@ def built(config: Config) -> str:
     """What is built in the plane alone is refused in space."""
     if config.geometry.n_dim == 2:
         return ""
-    if config.mesh.element == "quadratic":
+    if config.mesh.inversion_resistance > 0.0:
         return (
-            'mesh.element = "quadratic" is not allowed in space: there are no such tetrahedra yet. '
-            'Try mesh.element = "mean_dilatation" or "linear".'
+            f"mesh.inversion_resistance = {config.mesh.inversion_resistance:g} is not allowed in space: "
+            "it is built for triangles alone. Try mesh.inversion_resistance = 0."
         )
     if config.stability.follow_branch:
         return (

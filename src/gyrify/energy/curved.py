@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from types import ModuleType
 from typing import Final
 
 import numpy as np
 
-from gyrify.energy import bernstein
+from gyrify.energy import bernstein, bernstein_space
 from gyrify.energy.term import FloatArray, IntArray
 
 # How far the least volume ratio of a cell may lie above what is given for it, over the larger of it and 1.
@@ -19,13 +20,13 @@ SAFETY: Final = 0.9
 
 @dataclass(frozen=True, eq=False)
 class CurvedCells:
-    """Quadratic triangles, with bounds over the whole of each.
+    """Quadratic triangles or tetrahedra, with bounds over the whole of each.
 
     Attributes
     ----------
-    cells : (n_cells, 6) int array
-        Point indices.
-    points : (n_cells, 6, 2) float array
+    cells : (n_cells, n_nodes) int array
+        Point indices; 6 nodes in the plane, 10 in space.
+    points : (n_cells, n_nodes, n_dim) float array
         Reference coordinates of the nodes of each cell [mm].
     """
 
@@ -40,13 +41,18 @@ class CurvedCells:
             return None
         return CurvedCells(np.ascontiguousarray(cells), np.ascontiguousarray(cell_points))
 
+    @property
+    def _bounds(self) -> ModuleType:
+        """Compiled bounds of cells of this dimension."""
+        return bernstein if self.points.shape[2] == 2 else bernstein_space
+
     @cached_property
     def areas(self) -> FloatArray:
-        """(n_cells,) reference areas [mm^2]."""
+        """(n_cells,) reference areas of triangles [mm^2]."""
         return np.asarray(0.5 * self._coefficients(np.zeros((int(self.cells.max()) + 1, 2)))[1])
 
     def smaller_than(self, u: FloatArray, ratio: float) -> IntArray:
-        """Cells that may somewhere be smaller than a ratio of their reference size in a state u [mm]."""
+        """Triangles that may somewhere be smaller than a ratio of their reference size in a state u [mm]."""
         return np.flatnonzero(~(self._coefficients(u)[0] >= ratio * 2.0 * self.areas))
 
     def _coefficients(self, u: FloatArray) -> FloatArray:
@@ -57,16 +63,16 @@ class CurvedCells:
 
     def first_inverted(self, u: FloatArray) -> int | None:
         """Number of the first cell not proven positive all over in a state u [mm]; None if all are."""
-        found = int(bernstein.first_inverted(u, self.cells, self.points))
+        found = int(self._bounds.first_inverted(u, self.cells, self.points))
         return None if found < 0 else found
 
     def largest_step(self, u: FloatArray, du: FloatArray) -> float:
         """Largest safe fraction of du, at most 1: no cell is inverted anywhere on the path up to it."""
-        step = float(bernstein.largest_step(u, du, self.cells, self.points))
+        step = float(self._bounds.largest_step(u, du, self.cells, self.points))
         return 1.0 if step >= 1.0 else SAFETY * step
 
     def least_ratio(self, u: FloatArray) -> FloatArray:
         """(n_cells,) least det F over each cell, from below, within `RATIO_TOLERANCE`."""
         ratio = np.empty(self.cells.shape[0])
-        bernstein.least_ratios(u, self.cells, self.points, RATIO_TOLERANCE, ratio)
+        self._bounds.least_ratios(u, self.cells, self.points, RATIO_TOLERANCE, ratio)
         return ratio

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from gyrify.energy.term import FloatArray
+
+# Ends of the edges of a quadratic simplex, by dimension, in the order of VTK.
+EDGES: Final = {2: ((0, 1), (1, 2), (2, 0)), 3: ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))}
+# Volume coordinates of an integration point, and what that of the nearest corner has more.
+_COORDINATES: Final = {2: (1.0 / 6.0, 0.5), 3: (0.25 - np.sqrt(5.0) / 20.0, np.sqrt(5.0) / 5.0)}
 
 
 def reference_element(n_nodes: int, n_dim: int) -> tuple[FloatArray, FloatArray]:
@@ -13,7 +20,8 @@ def reference_element(n_nodes: int, n_dim: int) -> tuple[FloatArray, FloatArray]
     Parameters
     ----------
     n_nodes : int
-        d + 1 for a linear simplex, 6 for a quadratic triangle (corners, then the nodes between 01, 12, 20).
+        d + 1 for a linear simplex, 6 for a quadratic triangle (corners, then the nodes between 01, 12, 20),
+        10 for a quadratic tetrahedron (corners, then between 01, 12, 20, 03, 13, 23).
     n_dim : int
         Dimension d.
 
@@ -24,15 +32,17 @@ def reference_element(n_nodes: int, n_dim: int) -> tuple[FloatArray, FloatArray]
     weights : (n_q,) float array
         Weights; their sum is the volume 1/d! of the simplex.
     """
-    if n_nodes == n_dim + 1:
-        slopes = np.concatenate([-np.ones((1, n_dim)), np.eye(n_dim)])
-        return slopes[None], np.array([1.0 / np.prod(np.arange(1, n_dim + 1))])
-    if (n_nodes, n_dim) != (6, 2):
+    n_corners, volume = n_dim + 1, 1.0 / np.prod(np.arange(1, n_dim + 1))
+    slope = np.concatenate([-np.ones((1, n_dim)), np.eye(n_dim)])
+    if n_nodes == n_corners:
+        return slope[None], np.array([volume])
+    edges = EDGES.get(n_dim, ())
+    if n_nodes != n_corners + len(edges):
         raise ValueError(f"no element with {n_nodes} nodes in {n_dim} dimensions")
-    # degree 2, enough for the optimal order; area coordinates and their constant slopes
-    area = np.full((3, 3), 1.0 / 6.0) + 0.5 * np.eye(3)
-    slope = np.array([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])
-    after = [1, 2, 0]
-    corners = (4.0 * area - 1.0)[:, :, None] * slope
-    between = 4.0 * (area[:, :, None] * slope[after] + area[:, after, None] * slope)
-    return np.concatenate([corners, between], axis=1), np.full(3, 1.0 / 6.0)
+    # degree 2, enough for the optimal order; volume coordinates and their constant slopes
+    far, more = _COORDINATES[n_dim]
+    L = np.full((n_corners, n_corners), far) + more * np.eye(n_corners)
+    corners = (4.0 * L - 1.0)[:, :, None] * slope
+    a, b = np.array(edges).T
+    between = 4.0 * (L[:, a, None] * slope[b] + L[:, b, None] * slope[a])
+    return np.concatenate([corners, between], axis=1), np.full(n_corners, volume / n_corners)

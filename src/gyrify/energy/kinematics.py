@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -11,12 +12,18 @@ from gyrify.energy.element import reference_element
 from gyrify.energy.kernels import cell_kernels
 from gyrify.energy.term import FloatArray, IntArray
 
+# Of the nodes of quadratic cells, by their number.
+_SHARES: Final = {
+    6: np.repeat([1 / 12, 1 / 4], 3),
+    10: np.concatenate([np.full(4, 1 / 32), np.full(6, 7 / 48)]),
+}
+
 
 @dataclass(frozen=True, eq=False)
 class Simplices:
     """Integration points of simplices, each with the nodes of its cell and its share of the volume.
 
-    Linear cells (d + 1 nodes) have one point; quadratic triangles (6 nodes, curved edges) have three. All
+    Linear cells (d + 1 nodes) have one point, quadratic ones with curved edges d + 1 (6 or 10 nodes). All
     that follows is a sum over integration points.
 
     Attributes
@@ -63,11 +70,13 @@ class Simplices:
     def lumped_volumes(self) -> FloatArray:
         """(n_points,) share of the reference volume of each point of the mesh [mm^2].
 
-        A quadratic triangle gives 1/12 to each corner and 1/4 to each node between: the shares of its four
-        halves-edge triangles, since the row sums of its mass matrix vanish at the corners.
+        A quadratic triangle gives 1/12 to each corner and 1/4 to each node between, a tetrahedron 1/32 and
+        7/48: the shares of its parts with half the edges, since the row sums of the mass matrix vanish at
+        the corners of a triangle and are negative at those of a tetrahedron.
         """
-        n_nodes = self.cells.shape[1]
-        shares = np.repeat([1 / 12, 1 / 4], 3) if n_nodes == 6 else np.full(n_nodes, 1 / n_nodes)
+        shares = _SHARES.get(self.cells.shape[1])
+        if shares is None:
+            shares = np.full(self.cells.shape[1], 1 / self.cells.shape[1])
         lumped = np.zeros(self.n_points)
         np.add.at(lumped, self.cells, self.volumes[:, None] * shares)
         return lumped

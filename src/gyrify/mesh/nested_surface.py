@@ -29,11 +29,14 @@ class NestedSurface:
         those of the next.
     middles : tuple of (n, 3) int arrays
         Points of the next level in the middle of the edges 01, 12, 20 of each triangle; one level less.
+    between : callable
+        Parameters in the middle between two (n, k) arrays of them.
     """
 
     places: FloatArray
     triangles: tuple[IntArray, ...]
     middles: tuple[IntArray, ...]
+    between: Callable[[FloatArray, FloatArray], FloatArray]
 
     @property
     def n_levels(self) -> int:
@@ -124,7 +127,7 @@ def _halved(
         parts = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
         levels.append(np.stack([np.stack(part, axis=1) for part in parts], axis=1).reshape(-1, 3))
         middles.append(own)
-    return NestedSurface(places, tuple(levels), tuple(middles))
+    return NestedSurface(places, tuple(levels), tuple(middles), middle)
 
 
 def _on_the_sphere(a: FloatArray, b: FloatArray) -> FloatArray:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gyrify.errors import MeshError
 from gyrify.mesh.grading import Grading, layer_fractions
+from gyrify.mesh.layered_grid import Element
 from gyrify.mesh.mesh import FloatArray, IntArray, Mesh
+from gyrify.mesh.midsides import with_midsides
 from gyrify.mesh.quality import LOWEST_QUALITY, SliverError, tetrahedron_quality
 from gyrify.mesh.shapes.solid import SolidShape
 from gyrify.mesh.shells import Shells, build_shells, coarsening
@@ -32,6 +34,8 @@ class ShellLayers:
         Seed of the jitter.
     refine, refine_cortex : int
         Times all edges and layers, and then those of the cortex alone, are halved.
+    element : {"linear", "quadratic", "mean_dilatation"}
+        Quadratic cells get nodes between their corners.
     """
 
     edge_length: float
@@ -42,6 +46,7 @@ class ShellLayers:
     seed: int = 0
     refine: int = 0
     refine_cortex: int = 0
+    element: Element = "linear"
 
 
 def shell_mesh(shape: SolidShape, layers: ShellLayers) -> Mesh:
@@ -77,15 +82,19 @@ def shell_mesh(shape: SolidShape, layers: ShellLayers) -> Mesh:
     interface = lines.size - 1 - n_cortex
     levels = coarsening(surface.n_levels, thickness, edges, interface)
     shells = build_shells(surface, lines, levels, interface, solid=shape.is_solid)
-    points = shape.points(*_jittered(shape, shells, heights, edges, levels, layers))
-    cells = _positive(points, shells.cells, shape.periods)
+    places, depth = _jittered(shape, shells, heights, edges, levels, layers)
+    cells = _positive(shape.points(places, depth), shells.cells, shape.periods)
+    shells = replace(shells, places=places, depth=depth, cells=cells)
+    if layers.element == "quadratic":
+        shells = with_midsides(shells, surface.between)
+    points = shape.points(shells.places, shells.depth)
     outer, inner = shells.surfaces[-1], shells.surfaces[interface]
     middles = _corners(points, cells, shape.periods).mean(axis=1)
     x, y = shape.periods or (None, None)
     clamped = np.empty(0, dtype=np.int64) if shape.is_solid else np.unique(shells.surfaces[0])
     mesh = Mesh(
         points=points,
-        cells=cells,
+        cells=shells.cells,
         region=shells.region,
         contour=np.unique(outer),
         interface=np.unique(inner),
@@ -148,7 +157,7 @@ def _positive(points: FloatArray, cells: IntArray, periods: tuple[float, float] 
 
 
 def _require_quality(mesh: Mesh) -> None:
-    worst = float(tetrahedron_quality(mesh.cell_points).min())
+    worst = float(tetrahedron_quality(mesh.cell_points[:, :4]).min())
     if not np.isfinite(worst):
         raise MeshError("The mesh has points that are not finite numbers.", "Check the geometry.")
     if worst < LOWEST_QUALITY:

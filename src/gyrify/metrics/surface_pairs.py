@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
@@ -66,20 +67,43 @@ def smallest_gap(points: FloatArray, faces: IntArray) -> float:
     facets /= np.linalg.norm(facets, axis=1, keepdims=True)
     centres = corners.mean(axis=1)
     size = np.linalg.norm(corners - centres[:, None], axis=2).max()
-    tree, starts_tree = cKDTree(centres), cKDTree(starts)
     reach, limit = 2.0 * size, 0.1 * float(np.ptp(points, axis=0).max()) + size
+    groups = [
+        (cKDTree(starts[own]), cKDTree(centres[other]), own, other)
+        for own, other in _facing_groups(directions, facets)
+    ]
     while True:
-        near = starts_tree.sparse_distance_matrix(tree, reach, output_type="ndarray")
-        start, face = near["i"], near["j"]
-        facing = np.einsum("ni,ni->n", directions[start], facets[face]) < _FACING
-        start, face = start[facing], face[facing]
-        across = closest_points(starts[start], corners[face]) - starts[start]
-        outwards = np.einsum("ni,ni->n", across, directions[start]) > 0.0
-        distance = np.linalg.norm(across[outwards], axis=1)
-        found = float(distance.min()) if distance.size else np.inf
+        found = np.inf
+        for starts_tree, tree, own, other in groups:
+            near = starts_tree.sparse_distance_matrix(tree, reach, output_type="ndarray")
+            start, face = own[near["i"]], other[near["j"]]
+            facing = np.einsum("ni,ni->n", directions[start], facets[face]) < _FACING
+            start, face = start[facing], face[facing]
+            across = closest_points(starts[start], corners[face]) - starts[start]
+            outwards = np.einsum("ni,ni->n", across, directions[start]) > 0.0
+            found = min(found, float(np.linalg.norm(across[outwards], axis=1).min(initial=np.inf)))
         if found <= reach - size or reach >= limit:
             return found
         reach *= 2.0
+
+
+def _facing_groups(directions: FloatArray, facets: FloatArray) -> Iterator[tuple[IntArray, IntArray]]:
+    """Starts and facets among which all pairs are that face each other.
+
+    Facets are grouped by the nearest of 26 directions, so that on a smooth surface no start has to look at
+    those around it, of which there may be many within the reach.
+    """
+    steps = np.array([step for step in np.ndindex(3, 3, 3) if step != (1, 1, 1)]) - 1.0
+    axes = steps / np.linalg.norm(steps, axis=1, keepdims=True)
+    group = np.argmax(facets @ axes.T, axis=1)
+    for k in np.unique(group):
+        other = np.flatnonzero(group == k)
+        # the facet farthest from the axis of its group may face what is nearer to that axis by as much
+        away = np.arccos(np.clip((facets[other] @ axes[k]).min(), -1.0, 1.0))
+        nearest = max(np.arccos(_FACING) - away - 1e-9, 0.0)
+        own = np.flatnonzero(directions @ axes[k] <= np.cos(nearest))
+        if own.size:
+            yield own, other
 
 
 def distances_to(points: FloatArray, corners: FloatArray) -> FloatArray:

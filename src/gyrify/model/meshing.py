@@ -68,6 +68,7 @@ def _shell_layers(config: Config) -> ShellLayers:
         seed=config.seed,
         refine=mesh.refine,
         refine_cortex=mesh.refine_cortex,
+        element=mesh.element,
     )
 
 

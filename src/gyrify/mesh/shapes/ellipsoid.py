@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -60,8 +60,16 @@ class Ellipsoid:
         return float(np.cbrt(np.prod(self.semi_axes)))
 
     def surface(self, edge: float, n_halvings: int) -> NestedSurface:
-        """See `SolidShape`."""
-        return icosphere(nearest_frequency(edge / self._radius) * 2**n_halvings)
+        """See `SolidShape`.
+
+        On the sphere points are as dense as areas of the ellipsoid are large: exactly so about the axes.
+        """
+        surface = icosphere(nearest_frequency(edge / self._radius) * 2**n_halvings)
+        axes = np.array(self.semi_axes)
+        if np.ptp(axes) == 0.0:
+            return surface
+        places = surface.places / np.cbrt(axes)
+        return replace(surface, places=places / np.linalg.norm(places, axis=1, keepdims=True))
 
     def edge(self, surface: NestedSurface, depth: float) -> float:
         """See `SolidShape`: of equilateral triangles that cover the sphere of equal volume."""

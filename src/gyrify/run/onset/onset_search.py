@@ -95,6 +95,31 @@ class OnsetSearch:
             self._last = state
         except SolveError:
             self.lost_at = self._last.fraction * self._duration
+            if self.onset is None and self._n_negative == 0 and self._mesh.n_dim == 3:
+                self._end_at_limit_point(fraction)
+
+    def _end_at_limit_point(self, failed: float) -> None:
+        """Take the end of a stable branch as the onset, if its lowest eigenvalue vanishes there.
+
+        In space the surfaces that a ball or a patch folds into are not alike inwards and outwards, so that a
+        mesh that is not symmetric itself makes a limit point of the bifurcation: next to it the square of the
+        eigenvalue is linear, and beyond it there is no state to find.
+        """
+        before, last = sorted(self._branch.known)[-2:]
+        try:
+            start, end = self._lowest.at(before), self._lowest.at(last)
+        except SolveError:
+            return
+        value = last + (last - before) * end**2 / (start**2 - end**2) if start > end > 0.0 else np.inf
+        if value < failed:
+            root = Root(value, (last, failed), self._branch.at(last), self._lowest.pairs[last], False)
+            self.onset = self._onset(root)
+            wave, time = self.onset, self._duration
+            self.changes.append(
+                StabilityChange(
+                    value * time, wave.bracket, 0, 1, wave.kind, wave.mode_number, wave.wavelength
+                )
+            )
 
     def _change(self, state: SmoothState, before: int) -> StabilityChange:
         """What happened since the last look."""
