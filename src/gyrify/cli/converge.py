@@ -107,14 +107,17 @@ def _subjects(text: str) -> Sequence[Subject]:
 def _described(level: Level) -> str:
     config = level.config
     factor = 2**config.mesh.refine
+    n_dim = config.geometry.n_dim
+    mesh = f"{config.mesh.n_around * factor} × {config.mesh.n_layers * factor}"
     what = (
-        f"{config.mesh.n_around * factor} × {config.mesh.n_layers * factor} {config.mesh.element}, "
+        f"{mesh if n_dim == 2 else level.name('mesh')} {config.mesh.element}, "
         f"{config.solver.increments} increments, contact at {config.contact.activation_fraction:.4g} T"
     )
     if not level.is_complete:
         return f"{what}: {level.status}. {level.reason}"
-    gi, gyri = level.metrics["gi_closing"], level.metrics["n_gyri"]
-    return f"{what}: GI {gi:.3f}, {gyri:.0f} gyri, {level.wall_s:.1f} s"
+    gi, gyri = level.metrics["gi_closing" if n_dim == 2 else "gi_area_closing"], level.metrics["n_gyri"]
+    index = "GI" if n_dim == 2 else "GI by area"
+    return f"{what}: {index} {gi:.3f}, {gyri:.0f} gyri, {level.wall_s:.1f} s"
 
 
 def _report(found: Convergence, folder: Path) -> None:
@@ -134,7 +137,6 @@ def _print_family(console: object, family: Family) -> None:
     from rich.table import Table
 
     from gyrify.config.words import decimals
-    from gyrify.convergence.measured import metrics
 
     assert isinstance(console, Console)
     table = Table(title=f"Refined: {family.subject}", title_justify="left")
@@ -146,7 +148,7 @@ def _print_family(console: object, family: Family) -> None:
     table.add_column("limit", justify="right")
     table.add_column("verdict")
     styles = {True: "green", False: "yellow", None: "dim"}
-    for metric in metrics():
+    for metric in family.metrics:
         verdict = family.verdicts[metric.key]
         digits = metric.digits if metric.is_count else decimals(verdict.values, metric.digits)
         values = ["-" if value is None else f"{value:.{digits}f}" for value in verdict.values]

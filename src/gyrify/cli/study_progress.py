@@ -34,7 +34,9 @@ def described(progress: StudyProgress) -> str:
     summary = progress.record.summary
     if progress.record.status != "completed" or summary is None:
         return f"{values}: {progress.record.status}: {progress.record.reason}"
-    return f"{values}: GI {summary['gi']['closing']:.3f}, {summary['n_gyri']} gyri"
+    gi = summary["gi"]
+    index = f"GI {gi['closing']:.3f}" if "closing" in gi else f"GI by area {gi['area']['closing']:.3f}"
+    return f"{values}: {index}, {summary['n_gyri']} gyri"
 
 
 def duration(seconds: float) -> str:

@@ -77,9 +77,11 @@ def _print_csv(rows: Table) -> None:
 def _brief(rows: Table) -> Table:
     """Key, status, what is varied, and the first things to look at."""
     from gyrify.metrics.quantities import shown_in
+    from gyrify.study.results import dimensions
 
     varied = [name for name in rows.column_names if "." in name or name == "seed"]
-    wanted = ["key", "status", *varied, "phenotype", *(quantity.key for quantity in shown_in("table"))]
+    shown = (quantity.key for n_dim in dimensions(rows) for quantity in shown_in("table", n_dim))
+    wanted = dict.fromkeys(["key", "status", *varied, "phenotype", *shown])
     return rows.select([name for name in wanted if name in rows.column_names])
 
 

@@ -8,7 +8,6 @@ from pathlib import Path
 
 from gyrify.base.arguments import Pathlike, as_path, as_words, real_number, whole_number
 from gyrify.config import Config, ConfigLike, as_config
-from gyrify.config.plane_only import require_plane
 from gyrify.convergence.levels import Convergence, Family, Level
 from gyrify.convergence.plan import SUBJECTS, Subject, plan
 from gyrify.convergence.runs import complete_all
@@ -65,7 +64,6 @@ def converge(
         At Ctrl-C; the same call continues.
     """
     begun, config = time.perf_counter(), as_config(config)
-    require_plane(config, "A study of convergence", "Compare runs with mesh.refine = 0, 1 and 2.")
     tolerance, workers = real_number("tolerance", tolerance), whole_number("workers", workers)
     _require_sensible(tolerance, workers)
     usual = tuple(s for s in SUBJECTS if s != "contact" or config.contact.enabled)

@@ -12,7 +12,7 @@ from typing import Any
 from gyrify.base.markup import html_rows
 from gyrify.config import Config
 from gyrify.convergence.limit import RULE, Verdict, judge
-from gyrify.convergence.measured import metrics
+from gyrify.convergence.measured import Metric, metrics
 from gyrify.convergence.plan import Subject, contour_nodes, resolution
 from gyrify.store.files import whole_file
 
@@ -32,7 +32,7 @@ class Level:
     reason : str
         Why it did not complete.
     metrics : dict
-        By the keys of `gyrify.convergence.METRICS`; empty unless it completed.
+        By the keys of `gyrify.convergence.measured.metrics`; empty unless it completed.
     wall_s : float
         Time spent solving [s].
     warnings : tuple of str
@@ -59,6 +59,8 @@ class Level:
         if subject == "contact":
             return f"{resolution(self.config, 'contact'):.3g} mm"
         mesh = self.config.mesh
+        if self.config.geometry.n_dim == 3:
+            return f"edges of {resolution(self.config, 'mesh'):.3g} mm"
         factor = 2**mesh.refine
         return f"{mesh.n_around * factor} × {mesh.n_layers * factor}"
 
@@ -83,7 +85,7 @@ class Family:
 
     @cached_property
     def verdicts(self) -> dict[str, Verdict]:
-        """Verdict per metric, by the keys of `gyrify.convergence.METRICS`."""
+        """Verdict per metric, by its key."""
         scale = self.levels[0].config.geometry.scale if self.levels else 1.0
         return {
             metric.key: judge(
@@ -92,8 +94,13 @@ class Family:
                 is_count=metric.is_count,
                 least=metric.least * scale,
             )
-            for metric in metrics()
+            for metric in self.metrics
         }
+
+    @property
+    def metrics(self) -> tuple[Metric, ...]:
+        """What is compared."""
+        return metrics(self.levels[0].config.geometry.n_dim if self.levels else 2)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -105,7 +112,7 @@ class Family:
         ]
         notes += [
             f"{metric.name}: {self.verdicts[metric.key].note}."
-            for metric in metrics()
+            for metric in self.metrics
             if self.verdicts[metric.key].note
         ]
         gyri = self.verdicts["n_gyri"]
@@ -231,10 +238,10 @@ def _row(level: Level, subject: Subject) -> dict[str, Any]:
         "subject": subject,
         "level": level.name(subject),
         "resolution": resolution(config, subject),
-        "contour_nodes": contour_nodes(config),
+        "contour_nodes": contour_nodes(config) if config.geometry.n_dim == 2 else None,
         "run": config.config_hash[:12],
         "status": level.status,
         "reason": level.reason,
-        **{metric.key: level.metrics.get(metric.key) for metric in metrics()},
+        **{metric.key: level.metrics.get(metric.key) for metric in metrics(config.geometry.n_dim)},
         "wall_s": level.wall_s,
     }

@@ -43,11 +43,11 @@ class Metric:
     least: float = 0.0
 
 
-def metrics() -> tuple[Metric, ...]:
-    """What is compared, with any quantity that was registered later."""
+def metrics(n_dim: int = 2) -> tuple[Metric, ...]:
+    """What is compared of bodies in the plane (2) or in space (3), with any quantity registered later."""
     return tuple(
         Metric(q.key, _name(q), _UNITS.get(q.unit, q.unit), q.decimals or 0, q.type is int, q.least)
-        for q in shown_in("converge")
+        for q in shown_in("converge", n_dim)
     )
 
 
@@ -69,22 +69,23 @@ def measured(history: History) -> dict[str, float | None]:
     Returns
     -------
     dict
-        By the keys of `METRICS`; None where there is none. ``visible_growth_time`` is the growth time at
-        which the index by the closing passes `gyrify.run.onset.visible_time.VISIBLE`, interpolated between
+        By the keys of `metrics`; None where there is none. ``visible_growth_time`` is the growth time at
+        which the index by the closing (of areas in space) passes `gyrify.run.onset.visible_time.VISIBLE`, interpolated between
         increments; ``onset_growth_time`` that at which the smooth equilibrium loses stability.
     """
-    measures, onset = measure_state(history), history.onset
+    measures, onset, n_dim = measure_state(history), history.onset, history.mesh.n_dim
+    energy = "elastic_energy_mJ_per_mm" if n_dim == 2 else "elastic_energy_mJ"
     known: dict[str, float | None] = {
         **measures.flat(),
         "visible_growth_time": visible_time(history),
         "onset_growth_time": None if onset is None else onset.growth_time,
-        "elastic_energy_mJ_per_mm": elastic_energy(history),
+        energy: elastic_energy(history),
     }
-    return {metric.key: _finite(known[metric.key]) for metric in metrics()}
+    return {metric.key: _finite(known[metric.key]) for metric in metrics(n_dim)}
 
 
 def elastic_energy(history: History) -> float:
-    """Elastic energy of the last state [mJ per mm out of the plane], that is [N]."""
+    """Elastic energy of the last state [mJ per mm out of the plane], that is [N]; in space [mJ]."""
     time = float(history.growth_times[-1])
     energy = history.slice.elastic_energy(history.slice.kinematics(time))
     return 1e-6 * float(energy.evaluate(history.state_vector(), 0).value)

@@ -9,6 +9,7 @@ import numpy as np
 
 from gyrify.config import Config
 from gyrify.errors import ConfigError
+from gyrify.run.validity.ranges import contour_spacing
 
 Subject = Literal["mesh", "increments", "contact"]
 SUBJECTS: Final[tuple[Subject, ...]] = get_args(Subject)
@@ -57,13 +58,15 @@ def resolution(config: Config, subject: Subject) -> float:
     Returns
     -------
     float
-        Mean distance of contour nodes in the reference state [mm], increment over the duration, or distance
-        at which contact sets in [mm].
+        Mean distance of contour nodes, or edge on the outer surface, in the reference state [mm], increment
+        over the duration, or distance at which contact sets in [mm].
     """
     if subject == "increments":
         return 1.0 / config.solver.increments
     if subject == "contact":
         return config.contact.activation_fraction * config.geometry.cortical_thickness
+    if config.geometry.n_dim == 3:
+        return contour_spacing(config)
     return _contour_length(config) / contour_nodes(config)
 
 

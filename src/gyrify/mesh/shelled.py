@@ -11,6 +11,7 @@ from gyrify.mesh.grading import Grading, layer_fractions
 from gyrify.mesh.layered_grid import Element
 from gyrify.mesh.mesh import FloatArray, IntArray, Mesh
 from gyrify.mesh.midsides import with_midsides
+from gyrify.mesh.nested_surface import NestedSurface
 from gyrify.mesh.quality import LOWEST_QUALITY, SliverError, tetrahedron_quality
 from gyrify.mesh.shapes.solid import SolidShape
 from gyrify.mesh.shells import Shells, build_shells, coarsening
@@ -49,7 +50,7 @@ class ShellLayers:
     element: Element = "linear"
 
 
-def shell_mesh(shape: SolidShape, layers: ShellLayers) -> Mesh:
+def shell_mesh(shape: SolidShape, layers: ShellLayers, like: SolidShape | None = None) -> Mesh:
     """Mesh a shape in layers, the cortex finest.
 
     Parameters
@@ -59,6 +60,8 @@ def shell_mesh(shape: SolidShape, layers: ShellLayers) -> Mesh:
     layers : ShellLayers
         How its wall is divided. Jitter slides points of the outer surface, the interface and the innermost
         surface along it, so that all three stay exact.
+    like : SolidShape, optional
+        Body that is divided instead, to have cells between the same points: the same but for its cortex.
 
     Returns
     -------
@@ -69,18 +72,10 @@ def shell_mesh(shape: SolidShape, layers: ShellLayers) -> Mesh:
     MeshError
         If a cell would be a sliver.
     """
-    white, T = shape.wall
-    n_cortex = layers.n_cortex_layers * 2 ** (layers.refine + layers.refine_cortex)
-    n_white = (layers.n_layers - layers.n_cortex_layers) * 2**layers.refine
-    fractions = layer_fractions(n_white, T / n_cortex / white, layers.grading)
-    lines = np.concatenate([fractions, 1.0 + np.arange(1, n_cortex + 1) / n_cortex])
     surface = shape.surface(layers.edge_length, layers.refine + layers.refine_cortex)
-    if shape.is_solid:
-        lines = lines[1:]  # the first layer is a fan about the middle
-    heights = np.minimum(lines, 1.0) * white + np.maximum(lines - 1.0, 0.0) * T
-    thickness, edges = np.diff(heights), np.array([shape.edge(surface, depth) for depth in lines])
-    interface = lines.size - 1 - n_cortex
-    levels = coarsening(surface.n_levels, thickness, edges, interface)
+    lines, heights, interface = _lines(shape, layers)
+    edges = np.array([shape.edge(surface, depth) for depth in lines])
+    levels = _levels(like or shape, layers, surface)
     shells = build_shells(surface, lines, levels, interface, solid=shape.is_solid)
     places, depth = _jittered(shape, shells, heights, edges, levels, layers)
     cells = _positive(shape.points(places, depth), shells.cells, shape.periods)
@@ -110,6 +105,26 @@ def shell_mesh(shape: SolidShape, layers: ShellLayers) -> Mesh:
     )
     _require_quality(mesh)
     return mesh
+
+
+def _lines(shape: SolidShape, layers: ShellLayers) -> tuple[FloatArray, FloatArray, int]:
+    """Depth of the surfaces, their distance from the innermost end [mm], and which is the interface."""
+    white, T = shape.wall
+    n_cortex = layers.n_cortex_layers * 2 ** (layers.refine + layers.refine_cortex)
+    n_white = (layers.n_layers - layers.n_cortex_layers) * 2**layers.refine
+    fractions = layer_fractions(n_white, T / n_cortex / white, layers.grading)
+    lines = np.concatenate([fractions, 1.0 + np.arange(1, n_cortex + 1) / n_cortex])
+    if shape.is_solid:
+        lines = lines[1:]  # the first layer is a fan about the middle
+    heights = np.minimum(lines, 1.0) * white + np.maximum(lines - 1.0, 0.0) * T
+    return lines, heights, lines.size - 1 - n_cortex
+
+
+def _levels(shape: SolidShape, layers: ShellLayers, surface: NestedSurface) -> tuple[int, ...]:
+    """Level of each surface."""
+    lines, heights, interface = _lines(shape, layers)
+    edges = np.array([shape.edge(surface, depth) for depth in lines])
+    return coarsening(surface.n_levels, np.diff(heights), edges, interface)
 
 
 def _jittered(

@@ -55,6 +55,8 @@ class Quantity:
         slice.
     in_space : callable, optional
         What measures it of a state of a body in space.
+    of_n_dim : int, optional
+        Of what is known of a run: 2 or 3 where only a body in the plane, or in space, has it.
     """
 
     path: str
@@ -70,10 +72,17 @@ class Quantity:
     leads: bool = False
     least: float = 0.0
     in_space: Callable[[DeformedSurface], float | int | bool | None] | None = None
+    of_n_dim: int | None = None
 
     def measured_by(self, n_dim: int) -> Callable[[Any], float | int | bool | None] | None:
         """What measures it in the plane (2) or in space (3); None where nothing does."""
         return self.measure if n_dim == 2 else self.in_space
+
+    def is_known_in(self, n_dim: int) -> bool:
+        """Whether a body in the plane (2), or in space (3), has it."""
+        if self.is_measured:
+            return self.measured_by(n_dim) is not None
+        return self.of_n_dim in (None, n_dim)
 
     @property
     def is_measured(self) -> bool:
@@ -177,12 +186,11 @@ MEASURED: Final[list[Quantity]] = [
     ),
     Quantity(
         "gi.area.hull", float, "1", "GI by area, hull", 3, "Surface over the area of the convex hull",
-        _in("run", "notebook", "converge"), in_results=False, in_space=lambda s: s.area / s.hull_area,
+        _EVERYWHERE - {"table"}, in_results=False, in_space=lambda s: s.area / s.hull_area,
     ),
     Quantity(
         "gi.area.closing", float, "1", "GI by area, closing", 3, "Surface over the outline of the closing",
-        _in("run", "notebook", "converge"), in_results=False, leads=True,
-        in_space=lambda s: s.area / s.closing.area,
+        _EVERYWHERE, in_results=False, leads=True, in_space=lambda s: s.area / s.closing.area,
     ),
     Quantity(
         "gi.sections", float, "1", "GI of sections", 3, "Mean index by the closing of sections across x",
@@ -222,7 +230,11 @@ _AFTER: Final = [
     Quantity("visible_growth_time", float, "growth time", "folds visible", 1, shown=_in("converge")),
     Quantity(
         "elastic_energy_mJ_per_mm", float, "mJ/mm", "elastic energy", 3, shown=_in("converge"),
-        in_results=False,
+        in_results=False, of_n_dim=2,
+    ),
+    Quantity(
+        "elastic_energy_mJ", float, "mJ", "elastic energy", 3, shown=_in("converge"), in_results=False,
+        of_n_dim=3,
     ),
     Quantity("relaxed.gi_closing", float, "1"),
     Quantity("relaxed.n_gyri", int, "1"),
@@ -272,7 +284,7 @@ def by_key() -> dict[str, Quantity]:
 
 def shown_in(place: Place, n_dim: int = 2) -> list[Quantity]:
     """What is shown in a place of a body in the plane (2) or in space (3), in order."""
-    found = [q for q in quantities() if place in q.shown and (q.measured_by(n_dim) or not q.is_measured)]
+    found = [q for q in quantities() if place in q.shown and q.is_known_in(n_dim)]
     return sorted(found, key=lambda quantity: not quantity.leads)
 
 

@@ -22,8 +22,16 @@ _MANY_LAYERS: Final = (24, 32, 48, 64)
 _MOST_CELLS: Final = 1_500_000
 
 
-def build_mesh(config: Config) -> Mesh:
+def build_mesh(config: Config, like: Config | None = None) -> Mesh:
     """Mesh of a configuration.
+
+    Parameters
+    ----------
+    config : Config
+        The body.
+    like : Config, optional
+        In space, what the surfaces are divided for instead: the same but for the thickness of the cortex, so
+        that the states of both have the same unknowns. In the plane they have them anyway.
 
     Raises
     ------
@@ -31,17 +39,19 @@ def build_mesh(config: Config) -> Mesh:
         If the geometry cannot be meshed well; the advice names numbers with which it can.
     """
     try:
-        return _built(config)
+        return _built(config, like or config)
     except SliverError as fault:
         if config.geometry.n_dim == 3:
             raise
         raise SliverError(fault.message, _advice(config, fault.advice)) from None
 
 
-def _built(config: Config) -> Mesh:
+def _built(config: Config, like: Config) -> Mesh:
     mesh, shape = config.mesh, shape_of(config.geometry)
     if isinstance(shape, SolidShape):
-        return shell_mesh(shape, _shell_layers(config))
+        other = shape_of(like.geometry)
+        assert isinstance(other, SolidShape)
+        return shell_mesh(shape, _shell_layers(like), other)
     layers = Layers(
         n_around=mesh.n_around,
         n_layers=mesh.n_layers,
@@ -122,7 +132,8 @@ def _first(config: Config, tries: Iterable[dict[str, int]]) -> dict[str, int]:
             break
         try:
             # Corners lie where those of linear cells do, and these are quickly made.
-            _built(config.with_overrides({**changes, "mesh.element": "linear"}))
+            tried = config.with_overrides({**changes, "mesh.element": "linear"})
+            _built(tried, tried)
         except (ConfigError, MeshError):
             continue
         return changes

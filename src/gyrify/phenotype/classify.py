@@ -53,12 +53,13 @@ def classify(
     Returns
     -------
     Phenotype
-        Exactly one label for every admissible input: rules are tried in order, and the last always fires.
+        Exactly one label for every admissible slice: rules are tried in order, and the last always fires.
 
     Raises
     ------
     ConfigError
-        If a metric is missing, not finite or out of range.
+        If a metric is missing, not finite or out of range; of a body in space, if a rule asks for a number
+        that has no meaning there before one fires: only ``smooth``, and ``lissencephaly`` by depth, are left.
     """
     known = rules or load_rules()
     numbers = shape_numbers(metrics, thickness, known.normal_gyri)

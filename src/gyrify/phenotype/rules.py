@@ -96,8 +96,24 @@ class Rules:
     rules: tuple[Rule, ...]
 
     def first(self, numbers: Mapping[str, float]) -> Rule:
-        """The rule that fires first."""
-        return next(rule for rule in self.rules if rule.fires(numbers))
+        """The rule that fires first.
+
+        Raises
+        ------
+        ConfigError
+            If a rule that comes before it asks for a number that the body does not have.
+        """
+        for rule in self.rules:
+            missing = [c.number for c in rule.when if c.number not in numbers]
+            if missing:
+                raise ConfigError(
+                    f"The body has no phenotype: the rule {rule.name!r} asks for {missing[0]} "
+                    f"({self.numbers[missing[0]]}), which has no meaning in space.",
+                    "In space a body is smooth, has lissencephaly by the depth of its sulci, or has no label.",
+                )
+            if rule.fires(numbers):
+                return rule
+        raise ConfigError("No rule fires: the last one has conditions.", "Give it none.")
 
 
 @cache

@@ -23,6 +23,10 @@ _NEEDED = (
 )
 
 
+# In space the number of gyri is that of a surface, not of a slice, and a gyrus has no chord.
+_NEEDED_IN_SPACE = ("gi_area_hull", "sulcal_depth_mm_mean", "thickness_mm_crown", "thickness_mm_fundus")
+
+
 def grown_thickness(config: Config) -> float:
     """Thickness of the cortex at the end of growth if nothing held it back [mm].
 
@@ -61,7 +65,8 @@ def shape_numbers(
     -------
     dict
         ``hull``, ``depth``, ``gyri``, ``spacing``, ``breadth``, ``flatness`` and ``crown_fundus`` [-].
-        Without gyri the spacing is the whole outline.
+        Without gyri the spacing is the whole outline. Of a body in space, ``hull`` (of areas), ``depth`` and
+        ``crown_fundus`` alone.
 
     Raises
     ------
@@ -69,20 +74,28 @@ def shape_numbers(
         If a metric is missing, not finite or out of range.
     """
     row = metrics.flat() if isinstance(metrics, Measures) else metrics
-    value = {name: _metric(row, name) for name in _NEEDED}
+    is_in_space = row.get("gi_area_hull") is not None
+    value = {name: _metric(row, name) for name in (_NEEDED_IN_SPACE if is_in_space else _NEEDED)}
     thickness = _positive("thickness", thickness)
+    numbers = {
+        "hull": value["gi_area_hull" if is_in_space else "gi_hull"],
+        "depth": value["sulcal_depth_mm_mean"] / thickness,
+        "crown_fundus": value["thickness_mm_crown"] / _positive("fundus", value["thickness_mm_fundus"]),
+    }
+    if is_in_space:
+        return numbers
     outline = _positive("contour_length_mm", value["contour_length_mm"]) / _positive(
         "gi", value["gi_closing"]
     )
     gyri = value["n_gyri"]
     return {
-        "hull": value["gi_hull"],
-        "depth": value["sulcal_depth_mm_mean"] / thickness,
+        "hull": numbers["hull"],
+        "depth": numbers["depth"],
         "gyri": gyri / normal_gyri,
         "spacing": outline / max(gyri, 1.0) / thickness,
         "breadth": value["gyrus_width_mm"] * normal_gyri / outline,
         "flatness": value["gyrus_flatness"],
-        "crown_fundus": value["thickness_mm_crown"] / _positive("fundus", value["thickness_mm_fundus"]),
+        "crown_fundus": numbers["crown_fundus"],
     }
 
 

@@ -24,7 +24,7 @@ from gyrify.run.measuring import (
     write_metrics,
 )
 from gyrify.run.onset.visible_time import visible_time
-from gyrify.run.units import force_unit
+from gyrify.run.units import unit_of
 from gyrify.run.validity import config_warnings, run_warnings
 from gyrify.run.validity.converged import convergence
 from gyrify.run.validity.expected import expected_onset
@@ -123,11 +123,8 @@ def _summary(history: History, measures: Measures) -> dict[str, Any]:
     summary["expected"] = expected_onset(history.config).as_dict()
     summary["converged"] = convergence(history.config, measures.index, is_complete=is_complete)
     known = by_key()
-    force = force_unit(history.mesh.n_dim)
     summary["units"] = {
-        name: force if known[name].unit == force_unit(2) else known[name].unit
-        for name in _flat_names(summary)
-        if _has_unit(name, known)
+        name: unit_of(name, history.mesh.n_dim) for name in _flat_names(summary) if _has_unit(name, known)
     }
     summary["warnings"] = [*config_warnings(history.config), *run_warnings(history, summary)]
     return summary

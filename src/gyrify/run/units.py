@@ -8,20 +8,23 @@ from gyrify.config.words import extra
 from gyrify.metrics.quantities import by_key
 
 
-def unit_of(name: str) -> str:
+def unit_of(name: str, n_dim: int = 2) -> str:
     """Unit of a column of the results: a quantity, or a parameter by its dotted key; empty for words.
 
     Parameters
     ----------
     name : str
         Such as ``gi_closing`` or ``geometry.cortical_thickness``.
+    n_dim : int
+        Whether of a body in the plane (2) or in space (3): forces differ.
     """
     section, dot, key = name.partition(".")
     kind = sections(Config).get(section)
     if dot and kind is not None and key in kind.model_fields:
         return extra(kind.model_fields[key], "unit")
     quantity = by_key().get(name)
-    return quantity.unit if quantity is not None else ""
+    unit = quantity.unit if quantity is not None else ""
+    return force_unit(n_dim) if unit == force_unit(2) else unit
 
 
 def force_unit(n_dim: int) -> str:

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from gyrify.config.words import shorten
 from gyrify.errors import HistoryError
 from gyrify.metrics.gyrification import index_of
+from gyrify.run.body_measures import surface_of
 from gyrify.run.summary import measure_state
 from gyrify.store.files import read_facts, refuse_link, whole_file
 from gyrify.store.history import History
@@ -57,15 +58,15 @@ class FinalState:
 
     Attributes
     ----------
-    displacement : (n_points, 2) float array
+    displacement : (n_points, n_dim) float array
         u of the last state [mm].
     axial_stretch : () float array
         Total F33 of the last state [-]; 1 in plane strain.
     growth_time : (n_states,) float array
         Growth time of every state [time].
     gi_closing, gi_hull : (n_states,) float arrays
-        Gyrification index of every state [-].
-    onset_displacement, onset_vector : (n_points, 2) float arrays
+        Gyrification index of every state, of areas in space [-].
+    onset_displacement, onset_vector : (n_points, n_dim) float arrays
         State where stability was lost [mm], and the mode; of no points where it was not.
     """
 
@@ -80,7 +81,7 @@ class FinalState:
     @classmethod
     def of(cls, history: History) -> Self:
         """Read them from a run."""
-        onset, n, none = history.onset, history.mesh.n_points, np.zeros((0, 2))
+        onset, n, none = history.onset, history.mesh.n_points, np.zeros((0, history.mesh.n_dim))
         closing, hull = _indices(history)
         return cls(
             history.displacement(),
@@ -135,6 +136,13 @@ def _refuse_packed(path: Path) -> None:
 def _indices(history: History) -> tuple[FloatArray, FloatArray]:
     """Gyrification index of every state, by the closing and by the hull."""
     radius = history.config.metrics.closing_radius
+    if history.mesh.n_dim == 3:
+        surfaces = [
+            surface_of(history.mesh, history.points(index), history.config.metrics)
+            for index in range(len(history))
+        ]
+        closing = [surface.area / surface.closing.area for surface in surfaces]
+        return np.array(closing), np.array([surface.area / surface.hull_area for surface in surfaces])
     if history.mesh.period is not None:
         states = [measure_state(history, index) for index in range(len(history))]
         return np.array([s.gi_closing for s in states]), np.array([s.gi_hull for s in states])

@@ -11,7 +11,6 @@ from typing import Any, Final
 
 from gyrify.base.arguments import Pathlike, as_path, whole_number
 from gyrify.base.pool import MAX_WORKERS
-from gyrify.config.plane_only import require_plane
 from gyrify.errors import ConfigError
 from gyrify.store.disk_faults import storage_faults
 from gyrify.store.files import refuse_link, whole_file
@@ -100,8 +99,6 @@ def run_points(
     KeyboardInterrupt
         At Ctrl-C; what is done is stored, and the same call continues.
     """
-    for point in points:
-        require_plane(point.config, "A study")
     workers = whole_number("workers", workers)
     _require_sensible(points, workers, executor, scheduler)
     target = as_path("folder", folder).absolute()

@@ -11,7 +11,7 @@ from gyrify.base.markup import html_rows
 from gyrify.base.versions import solver_version
 from gyrify.study.archive import Record
 from gyrify.study.definition import Point
-from gyrify.study.results import read_results
+from gyrify.study.results import dimensions, read_results
 from gyrify.study.stored_point import RUNS, StoredPoint
 
 if TYPE_CHECKING:
@@ -46,7 +46,8 @@ class StudyProgress:
 
 
 # Quantities and rows that a notebook shows.
-_SHOWN: Final = ("phenotype", "gi_closing", "n_gyri", "sulcal_depth_mm_max")
+_INDEX: Final = {2: "gi_closing", 3: "gi_area_closing"}
+_SHOWN: Final = ("n_gyri", "sulcal_depth_mm_max")
 _MOST_ROWS: Final = 50
 
 
@@ -108,7 +109,9 @@ class StudyResult:
 
     def _repr_html_(self) -> str:
         table = self.table
-        names = ["key", "status", *(name for name in table.column_names if "." in name), *_SHOWN]
+        indices = [_INDEX[n_dim] for n_dim in dimensions(table)]
+        varied = (name for name in table.column_names if "." in name)
+        names = ["key", "status", *varied, "phenotype", *indices, *_SHOWN]
         chosen = table.select([name for name in names if name in table.column_names]).slice(0, _MOST_ROWS)
         rows = ([_cell(value) for value in row.values()] for row in chosen.to_pylist())
         return html_rows(repr(self), rows, chosen.column_names)

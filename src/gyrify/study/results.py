@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from gyrify.base.arguments import Pathlike, as_path
 from gyrify.config import Config
+from gyrify.config.body_sections import PERIODIC
 from gyrify.config.words import shorten, show
 from gyrify.errors import ConfigError, HistoryError
 from gyrify.metrics.quantities import flat, quantities
@@ -52,6 +53,17 @@ _ALIAS: Final[dict[type, str]] = {int: _INT, str: _TEXT, bool: _BOOL, float: _FL
 def column_types() -> dict[str, str]:
     """Columns that are always there, with their types; what else a summary holds comes after them."""
     return {quantity.key: _ALIAS[quantity.type] for quantity in quantities() if quantity.in_results}
+
+
+def dimensions(table: Table) -> tuple[int, ...]:
+    """Whether rows are of bodies in the plane (2), in space (3) or both, as far as their indices tell."""
+    named = {name: 3 if name == "gi_area_closing" else 2 for name in ("gi_closing", "gi_area_closing")}
+    found = tuple(
+        n_dim
+        for name, n_dim in named.items()
+        if name in table.column_names and table[name].null_count < table.num_rows
+    )
+    return found or (2,)
 
 
 def write_results(folder: Path, points: Sequence[Point], records: Mapping[str, Record]) -> None:
@@ -101,13 +113,14 @@ def results_table(points: Sequence[Point], records: Mapping[str, Record]) -> Tab
     last = ("phenotype", "phenotype_rule", "result_hash")
     names = [*(name for name in names if name not in last), *last]
     columns, described = [], []
+    n_dims = sorted({point.config.geometry.n_dim for point in points})
     for name in names:
         values = [row.get(name) for row in rows]
         kind = _kind(name, values)
         if kind == pa.string():
             values = [value if value is None or isinstance(value, str) else repr(value) for value in values]
         columns.append(pa.array(values, kind))
-        unit = unit_of(name)
+        unit = " or ".join(dict.fromkeys(unit_of(name, n_dim) for n_dim in n_dims))
         described.append(pa.field(name, kind, metadata={"unit": unit} if unit else None))
     return pa.table(columns, pa.schema(described))
 
@@ -197,12 +210,12 @@ def _row(point: Point, record: Record, varied: Iterable[str]) -> dict[str, Any]:
 
 
 def _phenotype(quantities: Mapping[str, Any], config: Config) -> tuple[str | None, str | None]:
-    """Label and rule; none for a strip, whose gyri are not those of a slice."""
-    if config.geometry.shape == "strip":
+    """Label and rule; none for a strip or a patch, whose gyri are not those of a slice."""
+    if config.geometry.shape in PERIODIC:
         return None, None
     try:
         found = classify(quantities, grown_thickness(config))
-    except ConfigError:  # a metric is not finite
+    except ConfigError:  # a metric is not finite, or in space the rules ask for one that it does not have
         return None, None
     return found.label, found.rule
 

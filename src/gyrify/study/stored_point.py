@@ -75,13 +75,14 @@ class StoredPoint:
         if not self.record.final_sha256:
             raise HistoryError(f"The run {self.key} has no state: {self.record.reason}", self.record.advice)
         final = FinalState.load(self.folder / FINAL)
-        n, n_states, onset = self.mesh.n_points, final.growth_time.size, final.onset_vector.shape
+        n, n_dim, n_states = self.mesh.n_points, self.mesh.n_dim, final.growth_time.size
+        onset = final.onset_vector.shape
         if (
-            final.displacement.shape != (n, 2)
+            final.displacement.shape != (n, n_dim)
             or final.axial_stretch.shape != ()
             or n_states == 0
             or any(a.shape != (n_states,) for a in (final.growth_time, final.gi_closing, final.gi_hull))
-            or onset not in ((0, 2), (n, 2))
+            or onset not in ((0, n_dim), (n, n_dim))
             or final.onset_displacement.shape != onset
             or not np.isfinite(final.displacement).all()
         ):
@@ -90,17 +91,17 @@ class StoredPoint:
 
     @property
     def points(self) -> FloatArray:
-        """(n_points, 2) deformed coordinates x [mm] of the last state."""
+        """(n_points, n_dim) deformed coordinates x [mm] of the last state."""
         return self.mesh.points + self.final.displacement
 
     @property
     def contour(self) -> FloatArray:
-        """(n_contour, 2) deformed outer contour [mm] of the last state."""
+        """(n_contour, n_dim) deformed outer contour, or points of the outer surface [mm], of the last state."""
         return self.points[self.mesh.contour]
 
     @property
     def interface(self) -> FloatArray:
-        """(n_interface, 2) deformed grey-white interface [mm] of the last state."""
+        """(n_interface, n_dim) deformed points of the grey-white interface [mm] of the last state."""
         return self.points[self.mesh.interface]
 
 

@@ -10,7 +10,6 @@ from itertools import pairwise
 from gyrify.base.arguments import real_number
 from gyrify.base.pool import MAX_WORKERS
 from gyrify.config import Config, ConfigLike, as_config
-from gyrify.config.plane_only import require_plane
 from gyrify.errors import ConfigError
 from gyrify.run.limits import Watch
 from gyrify.run.validity.expected import expected_onset
@@ -78,7 +77,6 @@ def critical_growth(
         If a limit of the configuration is reached.
     """
     begun, config = time.perf_counter(), as_config(config)
-    require_plane(config, "A threshold", "`gyrify run` finds the onset over growth time (stability.detect).")
     level = real_number("level", level)
     tolerance = None if tolerance is None else real_number("tolerance", tolerance)
     _check(definition, level, tolerance, workers)

@@ -5,13 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from gyrify.config import Config
-from gyrify.model.slice import Slice
+from gyrify.model.slice import Slice, build_mesh
 from gyrify.threshold.scanned_parameter import configured
 
 
 @dataclass
 class Problems:
     """Gives tissue and growth fraction; what depends on the mesh alone is shared.
+
+    Over the thickness of the cortex the mesh stays that of the configuration, with its layers moved: the
+    branch is followed from one value to the next.
 
     Attributes
     ----------
@@ -33,7 +36,7 @@ class Problems:
             return self._first, value / self.config.growth.duration
         config = configured(self.config, self.parameter, value)
         if self._first is None or self.parameter.startswith("geometry"):
-            problem = Slice(config)
+            problem = Slice(config, build_mesh(config, like=self.config))
         else:
             problem = self._first.varied(config)
         self._first = self._first or problem

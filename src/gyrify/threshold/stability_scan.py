@@ -134,8 +134,8 @@ class StabilityScan:
         """Where the lowest eigenvalue vanishes between two points of the scan."""
         was_unstable = bool(below.n_negative)
         root = self._lowest.root(below.value, above.value, tolerance * above.value, was_unstable)
-        if not root.is_refined:
-            low, high = root.bracket
+        low, high = root.bracket
+        if not root.is_refined and high - low > tolerance * above.value:
             self.notes.append(f"The crossing between {low:.6g} and {high:.6g} is not known more closely.")
         wave = wave_of(root.state.problem.mesh, root.state.u, root.pair.vector)
         time = root.value if self._parameter == "growth.time" else self._config.growth.duration

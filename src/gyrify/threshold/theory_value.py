@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from gyrify.config.body_sections import PERIODIC
 from gyrify.errors import GyrifyError
-from gyrify.run.validity.exact_bodies import annulus_of
+from gyrify.run.validity.exact_bodies import round_body
 from gyrify.run.validity.expected import expected_onset
-from gyrify.theory import BaseState, base_state, stability_margin
+from gyrify.theory.margin import SmoothState, stability_margin
+from gyrify.theory.onset import state_at
 from gyrify.threshold.scanned_parameter import configured
 
 if TYPE_CHECKING:
@@ -32,7 +34,8 @@ def expected_crossings(config: Config, parameter: str, values: Sequence[float]) 
     Parameters
     ----------
     config : Config
-        The other parameters; an ellipse stands as the circle of the same area and hole.
+        The other parameters; an ellipse stands as the circle of the same area and hole, an ellipsoid as the
+        sphere of the same volume and hole.
     parameter : str
         As in `gyrify.threshold.critical_growth`.
     values : sequence of float
@@ -43,13 +46,13 @@ def expected_crossings(config: Config, parameter: str, values: Sequence[float]) 
     tuple of float or None
         In increasing order, to 0.1 % of the range; None where no theory covers the configuration.
     """
-    is_strip = config.geometry.shape == "strip"
+    is_flat = config.geometry.shape in PERIODIC
     if not expected_onset(config).is_known:
         return None
     scanned = np.asarray(values, dtype=np.float64)
-    if is_strip:
+    if is_flat:
         scanned = scanned[np.unique(np.linspace(0, len(values) - 1, _VALUES_OF_A_STRIP).round().astype(int))]
-    unstable = _StripJudge(config, parameter) if is_strip else _RingJudge(config, parameter)
+    unstable = _StripJudge(config, parameter) if is_flat else _RoundJudge(config, parameter)
     try:
         known = [unstable(float(value)) for value in scanned]
         return tuple(
@@ -76,20 +79,18 @@ class _Judge(ABC):
         """Whether the smooth state of a value is unstable."""
 
 
-class _RingJudge(_Judge):
-    """By the annulus."""
+class _RoundJudge(_Judge):
+    """By the annulus, in space by the sphere."""
 
     def __init__(self, config: Config, parameter: str) -> None:
         super().__init__(config, parameter)
-        self._guess: BaseState | None = None
+        self._guess: SmoothState | None = None
 
     def __call__(self, value: float) -> bool:
-        if self.parameter == "growth.time":
-            annulus, time = annulus_of(self.config), value
-        else:
-            config = self.at(value)
-            annulus, time = annulus_of(config), config.growth.duration
-        self._guess = base_state(annulus, time, self._guess)
+        is_time = self.parameter == "growth.time"
+        config = self.config if is_time else self.at(value)
+        time = value if is_time else config.growth.duration
+        self._guess = state_at(round_body(config), "growth_time", time, time, self._guess)
         return stability_margin(self._guess).value < 0.0
 
 

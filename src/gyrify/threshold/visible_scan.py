@@ -73,7 +73,7 @@ class VisibleScan:
             if value in failures
         ]
         return [
-            Scanned(value, gi=self._measures[value].gi_closing) for value in values if value not in failures
+            Scanned(value, gi=self._index(self._measures[value])) for value in values if value not in failures
         ]
 
     def crossing(self, below: Scanned, above: Scanned, tolerance: float) -> Crossing:
@@ -81,7 +81,7 @@ class VisibleScan:
         low, high = below, above
         while self._parameter != "growth.time" and high.value - low.value > tolerance * high.value:
             middle = 0.5 * (low.value + high.value)
-            between = Scanned(middle, gi=self._run(middle).gi_closing)
+            between = Scanned(middle, gi=self._index(self._run(middle)))
             low, high = (between, high) if self.folded(between) == self.folded(low) else (low, between)
         folded = self._measures[(high if self.folded(high) else low).value]
         becomes: Becomes = "folded" if self.folded(high) else "smooth"
@@ -90,7 +90,7 @@ class VisibleScan:
             value = low.value + (self._level - low.gi) / (high.gi - low.gi) * (high.value - low.value)
         time = value if self._parameter == "growth.time" else self._config.growth.duration
         n_gyri = folded.n_gyri or None
-        wavelength = folded.contour_length / n_gyri if n_gyri else None
+        wavelength = _wavelength(folded) if n_gyri else None
         return Crossing(value, becomes, (low.value, high.value), n_gyri, wavelength, time)
 
     def folded(self, point: Scanned) -> bool:
@@ -110,7 +110,23 @@ class VisibleScan:
         times = history.growth_times
         inside = np.flatnonzero(times >= low)
         self._measures = {float(times[index]): measure_state(history, int(index)) for index in inside}
-        return [Scanned(time, gi=measures.gi_closing) for time, measures in self._measures.items()]
+        return [Scanned(time, gi=self._index(measures)) for time, measures in self._measures.items()]
+
+    def _index(self, measures: Measures) -> float:
+        """Index by the closing, in space of areas: 1 where that by the hull is at most the level.
+
+        The area of the closing is read off a grid, and lacks as much of a smooth surface as of a folded one.
+        """
+        if measures.n_dim == 3 and measures.gi_area_hull <= self._level:
+            return 1.0
+        return measures.index
+
+
+def _wavelength(measures: Measures) -> float | None:
+    """Contour over the number of gyri; in space as it is measured, None where there are no folds."""
+    if measures.n_dim == 3:
+        return measures.wavelength or None
+    return measures.contour_length / measures.n_gyri
 
 
 def _grown(config: Config, watch: Watcher = go_on) -> History:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -43,6 +43,11 @@ def require_covered(config: Config) -> None:
         )
 
 
+def round_body(config: Config) -> Annulus | Sphere:
+    """Annulus of a body in the plane, sphere of one in space: see `annulus_of` and `sphere_of`."""
+    return annulus_of(config) if config.geometry.n_dim == 2 else sphere_of(config)
+
+
 def sphere_of(config: Config) -> Sphere:
     """Sphere of the same volume, hole, tissue and growth.
 
@@ -53,29 +58,13 @@ def sphere_of(config: Config) -> Sphere:
     """
     from gyrify.theory import Sphere
 
-    require_covered(config)
-    geometry, material, growth = config.geometry, config.material, config.growth
-    if material.poisson_ratio != material.poisson_ratio_white:
+    shared = _shared(config)
+    if config.material.poisson_ratio != config.material.poisson_ratio_white:
         raise ConfigError(
             "the theory of a sphere has one Poisson ratio.",
             "Leave material.poisson_ratio_white out to compare with it.",
         )
-    return Sphere(
-        inner_radius=geometry.hole_fraction * geometry.mean_radius,
-        outer_radius=geometry.mean_radius,
-        cortical_thickness=geometry.cortical_thickness,
-        young_modulus=material.young_modulus,
-        stiffness_ratio=material.stiffness_ratio,
-        poisson_ratio=material.poisson_ratio,
-        growth_rate=growth.rate,
-        growth_ratio=growth.ratio,
-        duration=growth.duration,
-        hole="clamped" if config.boundary.clamp == "hole" else "free",
-        stretch=growth.stretch,
-        energy_per=growth.energy_per,
-        law="tangential" if growth.is_tangential else "isotropic",
-        degree=DEGREE,
-    )
+    return Sphere(**shared, hole="clamped" if config.boundary.clamp == "hole" else "free")
 
 
 def annulus_of(config: Config) -> Annulus:
@@ -88,27 +77,40 @@ def annulus_of(config: Config) -> Annulus:
     """
     from gyrify.theory import Annulus
 
-    require_covered(config)
-    geometry, material, growth = config.geometry, config.material, config.growth
-    radius = geometry.mean_radius
+    growth = config.growth
     return Annulus(
-        inner_radius=geometry.hole_fraction * radius,
-        outer_radius=radius,
-        cortical_thickness=geometry.cortical_thickness,
-        young_modulus=material.young_modulus,
-        stiffness_ratio=material.stiffness_ratio,
-        poisson_ratio=material.poisson_ratio,
-        poisson_ratio_white=material.poisson_ratio_white,
-        growth_rate=growth.rate,
-        growth_ratio=growth.ratio,
-        duration=growth.duration,
+        **_shared(config),
+        poisson_ratio_white=config.material.poisson_ratio_white,
         out_of_plane=growth.out_of_plane,
         out_of_plane_exponent=growth.out_of_plane_exponent,
-        stretch=growth.stretch,
-        energy_per=growth.energy_per,
-        law="tangential" if growth.is_tangential else "isotropic",
-        degree=DEGREE,
     )
+
+
+def _shared(config: Config) -> dict[str, Any]:
+    """What an annulus and a sphere have in common.
+
+    Raises
+    ------
+    ConfigError
+        If the configuration has something that the theory does not have.
+    """
+    require_covered(config)
+    geometry, material, growth = config.geometry, config.material, config.growth
+    return {
+        "inner_radius": geometry.hole_fraction * geometry.mean_radius,
+        "outer_radius": geometry.mean_radius,
+        "cortical_thickness": geometry.cortical_thickness,
+        "young_modulus": material.young_modulus,
+        "stiffness_ratio": material.stiffness_ratio,
+        "poisson_ratio": material.poisson_ratio,
+        "growth_rate": growth.rate,
+        "growth_ratio": growth.ratio,
+        "duration": growth.duration,
+        "stretch": growth.stretch,
+        "energy_per": growth.energy_per,
+        "law": "tangential" if growth.is_tangential else "isotropic",
+        "degree": DEGREE,
+    }
 
 
 _LOADINGS: Final = {
