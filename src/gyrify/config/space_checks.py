@@ -75,10 +75,6 @@ def built(config: Config) -> str:
             f"mesh.inversion_resistance = {config.mesh.inversion_resistance:g} is not allowed in space: "
             "it is built for triangles alone. Try mesh.inversion_resistance = 0."
         )
-    if config.stability.follow_branch:
-        return (
-            "stability.follow_branch = true is not allowed in space yet. Try stability.follow_branch = false."
-        )
     return ""
 
 

@@ -19,7 +19,11 @@ from gyrify.metrics.surface import FloatArray, face_areas, sampled
 
 # Spacings of the grid to a radius, and how far from a level distances are read exactly, in spacings.
 PER_RADIUS: Final = 4.0
+# The same for a patch, whose straight valleys are creases of the outline: there the grid cuts off most.
+PER_RADIUS_OF_A_PATCH: Final = 6.0
 _BAND: Final = 2.5
+# Half the width over which a period's weight falls to nothing, in spacings.
+_RAMP: Final = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +47,12 @@ class SurfaceClosing:
     @property
     def spacing(self) -> float:
         """Spacing of the grid [mm]."""
-        return self.radius / PER_RADIUS
+        return self.radius / (PER_RADIUS if self.periods is None else PER_RADIUS_OF_A_PATCH)
+
+    @property
+    def _beyond(self) -> float:
+        """How far the grid goes on beyond a period: what is weighed must not feel its end [mm]."""
+        return self.radius + (_RAMP + 3.0) * self.spacing
 
     @cached_property
     def _grid(self) -> tuple[FloatArray, FloatArray]:
@@ -52,8 +61,8 @@ class SurfaceClosing:
         low, high = points.min(axis=0) - self.radius - 3.0 * h, points.max(axis=0) + self.radius + 3.0 * h
         if self.periods is not None:
             # within the images, so that the surface cuts the grid in two
-            low[:2] += self.radius + 3.5 * h
-            high[:2] -= self.radius + 3.5 * h
+            low[:2] = -self._beyond
+            high[:2] = np.array(self.periods) + self._beyond
             low[2] += self.radius
         shape = np.ceil((high - low) / h).astype(int) + 1
         place = np.round((points - low) / h).astype(int)
@@ -69,7 +78,8 @@ class SurfaceClosing:
         """Triangles with their images next to them."""
         if self.periods is None:
             return corners
-        margin, (x, y) = 2.0 * self.radius + 6.0 * self.spacing, self.periods
+        extent = float(np.ptp(corners[:, :, :2], axis=1).max())
+        margin, (x, y) = self._beyond + self.radius + extent, self.periods
         shifts = [
             (i * x, j * y, 0.0)
             for i in range(-int(np.ceil(margin / x)), int(np.ceil(margin / x)) + 1)
@@ -100,15 +110,23 @@ class SurfaceClosing:
         inwards = self.spacing * ndimage.distance_transform_edt(distance < self.radius)
         self._read_exactly(origin, inwards, self._offset_points)
         outline = _level_set(origin, inwards, self.radius, self.spacing)
+        areas = face_areas(outline)
         if self.periods is not None:
-            middle = outline.mean(axis=1)[:, :2]
-            outline = outline[np.all((middle >= 0.0) & (middle < np.array(self.periods)), axis=1)]
-        return float(face_areas(outline).sum())
+            middle = outline.mean(axis=1)
+            for axis, period in enumerate(self.periods):
+                areas = areas * _share(middle[:, axis], period, _RAMP * self.spacing)
+        return float(areas.sum())
 
     def depth(self, points: FloatArray) -> FloatArray:
         """(n,) depth of points of the solid below the closing's outline [mm], at least 0."""
         distance, _ = cKDTree(self._offset_points).query(points)
         return np.asarray(np.maximum(distance - self.radius, 0.0))
+
+
+def _share(x: FloatArray, period: float, width: float) -> FloatArray:
+    """Weights that sum to 1 over a place and its images, without an edge that would cut triangles."""
+    overlap = np.minimum(x + width, period) - np.maximum(x - width, 0.0)
+    return np.asarray(np.maximum(overlap, 0.0) / (2.0 * width))
 
 
 def _level_set(origin: FloatArray, values: FloatArray, level: float, spacing: float) -> FloatArray:

@@ -102,11 +102,13 @@ def _find(
         else StabilityScan(config, parameter, watch)
     )
     scanned = scan.scan(values)
-    crossings = tuple(
+    changes = [
         scan.crossing(below, above, tolerance)
         for below, above in pairwise(point for point in scanned if _is_known(point))
         if _is_beyond(below, level) != _is_beyond(above, level)
-    )
+    ]
+    ends = scan.ends(scanned) if isinstance(scan, StabilityScan) else []
+    crossings = (*changes, *ends)
     main, edges = main_crossing(crossings), _edges(parameter, scanned, crossings, level, tolerance)
     unsolved = _unsolved(values, scanned)
     if visible and parameter == "growth.time":  # one run, read at its own increments

@@ -11,10 +11,11 @@ import numpy as np
 from gyrify.config import Config
 from gyrify.errors import SolveError
 from gyrify.run.onset.crossing import LowestEigenvalue
-from gyrify.run.onset.mode_kinds import wave_of
+from gyrify.run.onset.mode_kinds import Wave, wave_of
 from gyrify.run.onset.smooth import IDEAL, SmoothBranch, SmoothState, grown
 from gyrify.threshold.crossings import Becomes, Crossing, Scanned
 from gyrify.threshold.problems import Problems
+from gyrify.threshold.scanned_parameter import Range
 
 # The scan ends after so many values in a row without a smooth state.
 _GIVE_UP = 3
@@ -137,12 +138,51 @@ class StabilityScan:
         low, high = root.bracket
         if not root.is_refined and high - low > tolerance * above.value:
             self.notes.append(f"The crossing between {low:.6g} and {high:.6g} is not known more closely.")
-        wave = wave_of(root.state.problem.mesh, root.state.u, root.pair.vector)
-        time = root.value if self._parameter == "growth.time" else self._config.growth.duration
         becomes: Becomes = "stable" if was_unstable else "unstable"
-        return Crossing(
-            root.value, becomes, root.bracket, wave.mode_number, wave.wavelength or None, time, wave.kind
-        )
+        wave = wave_of(root.state.problem.mesh, root.state.u, root.pair.vector)
+        return self._crossing(root.value, becomes, root.bracket, wave)
+
+    def _crossing(self, value: float, becomes: Becomes, bracket: Range, wave: Wave) -> Crossing:
+        time = value if self._parameter == "growth.time" else self._config.growth.duration
+        return Crossing(value, becomes, bracket, wave.mode_number, wave.wavelength or None, time, wave.kind)
+
+    def ends(self, scanned: Sequence[Scanned]) -> list[Crossing]:
+        """Where the smooth state of a body in space ends, stable until then, as its lowest eigenvalue vanishes.
+
+        Modes of even degree on a sphere have a cubic term in their energy. A mesh that is not as symmetric as
+        the sphere turns their bifurcation into a limit point: the branch turns back there, and beyond it no
+        smooth state is left. Near it the square of the eigenvalue is linear.
+        """
+        if self._config.geometry.n_dim == 2:
+            return []
+        pairs = [(before, after) for before, after in pairwise(scanned) if before.n_negative == 0]
+        back = [(after, before) for before, after in pairwise(scanned) if after.n_negative == 0]
+        found = (self._end(stable.value, other.value) for stable, other in (*pairs, *back) if _missing(other))
+        return [crossing for crossing in found if crossing is not None]
+
+    def _end(self, stable: float, missing: float) -> Crossing | None:
+        """The limit point between a stable state and a value without one, if the last two states tell it."""
+        side = [v for v in self._branch.known if (v - stable) * (missing - stable) <= 0.0]
+        before = min((v for v in side if v != stable), key=lambda v: abs(v - stable), default=None)
+        if before is None:
+            return None
+        with suppress(SolveError):
+            first, last = self.eigenvalue(before) ** 2, self.eigenvalue(stable) ** 2
+            if last >= first:
+                return None
+            step = last * (stable - before) / (first - last)
+            if abs(step) > abs(missing - stable):
+                return None
+            value = stable + step
+            self.notes.append(
+                f"The smooth state ends at {value:.6g}: its lowest eigenvalue vanishes there as at a limit "
+                "point, since the mesh is less symmetric than the body. A finer mesh moves it."
+            )
+            bracket = (min(stable, missing), max(stable, missing))
+            becomes: Becomes = "unstable" if stable < missing else "stable"
+            state, mode = self._branch.known[stable], self._lowest.pairs[stable].vector
+            return self._crossing(value, becomes, bracket, wave_of(state.problem.mesh, state.u, mode))
+        return None
 
     def eigenvalue(self, value: float) -> float:
         """Lowest eigenvalue at a value of the parameter [Pa/mm^2]."""
@@ -163,3 +203,7 @@ class StabilityScan:
             self._branch = SmoothBranch(self._problem_at, start, self._system, self._watch)
             self._lowest = LowestEigenvalue(self._branch, self._system)
             return
+
+
+def _missing(point: Scanned) -> bool:
+    return point.n_negative is None
