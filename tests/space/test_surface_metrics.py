@@ -108,9 +108,10 @@ def test_closing_of_a_flat_patch_is_the_patch(radius: float, periods: tuple[floa
         [[[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 0, 0], [1, 1, 0], [0, 1, 0]]], dtype=np.float64
     ) * [*periods, 1.0]
     for height in (0.0, 7.3):
-        closing = SurfaceClosing(corners + [0.3, -0.2, height], radius, periods)
+        there = corners + np.array([0.3, -0.2, height])
+        closing = SurfaceClosing(there, radius, periods)
         assert closing.area == pytest.approx(periods[0] * periods[1], rel=1e-4)
-        assert closing.depth(corners.reshape(-1, 3) + [0.3, -0.2, height]).max() < 1e-3 * radius
+        assert closing.depth(there.reshape(-1, 3)).max() < 1e-3 * radius
 
 
 def test_closing_of_a_patch_is_that_of_one_period() -> None:

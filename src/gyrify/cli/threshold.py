@@ -87,10 +87,7 @@ def _report(found: Threshold) -> None:
 
     unit = PARAMETERS[found.parameter].unit
     for crossing in found.crossings:
-        wave = ""
-        if crossing.mode_number is not None and crossing.wavelength_mm is not None:
-            kind = "gyri" if found.definition == "visible" else "waves"
-            wave = f", {crossing.mode_number} {kind} of {crossing.wavelength_mm:.3g} mm"
+        wave = f", {found.wave(crossing)}" if found.wave(crossing) else ""
         value = f"{crossing.value:.6g} {unit}".rstrip()
         say(f"{found.parameter} = {value}: becomes {crossing.becomes} above{wave}.")
     if found.critical_value is None:

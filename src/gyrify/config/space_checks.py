@@ -20,6 +20,11 @@ def edge_length(config: Config) -> float:
     return config.mesh.edge_length or EDGE * config.geometry.cortical_thickness
 
 
+def finer(config: Config) -> str:
+    """What makes the mesh of a body finer along its surface, as advice."""
+    return "raise mesh.n_around" if config.geometry.n_dim == 2 else "lower mesh.edge_length"
+
+
 def n_cells(config: Config) -> float:
     """About how many tetrahedra a body in space has at most: three to a prism."""
     geometry, mesh = config.geometry, config.mesh

@@ -70,8 +70,9 @@ def measured(history: History) -> dict[str, float | None]:
     -------
     dict
         By the keys of `metrics`; None where there is none. ``visible_growth_time`` is the growth time at
-        which the index by the closing (of areas in space) passes `gyrify.run.onset.visible_time.VISIBLE`, interpolated between
-        increments; ``onset_growth_time`` that at which the smooth equilibrium loses stability.
+        which the index by the closing, in space of areas, passes
+        `gyrify.run.onset.visible_time.VISIBLE`, interpolated between increments; ``onset_growth_time`` that
+        at which the smooth equilibrium loses stability.
     """
     measures, onset, n_dim = measure_state(history), history.onset, history.mesh.n_dim
     energy = "elastic_energy_mJ_per_mm" if n_dim == 2 else "elastic_energy_mJ"

@@ -109,7 +109,7 @@ class Rules:
                 raise ConfigError(
                     f"The body has no phenotype: the rule {rule.name!r} asks for {missing[0]} "
                     f"({self.numbers[missing[0]]}), which has no meaning in space.",
-                    "In space a body is smooth, has lissencephaly by the depth of its sulci, or has no label.",
+                    "In space a body is smooth, has lissencephaly by the depth of sulci, or has no label.",
                 )
             if rule.fires(numbers):
                 return rule

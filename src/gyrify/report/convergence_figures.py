@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, MaxNLocator, NullLocator
 from numpy.typing import NDArray
 
-from gyrify.convergence import METRICS, Convergence, Family, Level
+from gyrify.convergence import Convergence, Family, Level
 from gyrify.convergence.plan import resolution
 from gyrify.report.figures import save_figure
 from gyrify.report.layout import COLOURS
@@ -25,20 +25,30 @@ FloatArray = NDArray[np.float64]
 # Okabe and Ito's colours, told apart by every common colour vision; markers tell them apart too.
 HUES: Final = ("#0072B2", "#D55E00", "#009E73")
 MARKERS: Final = ("o", "s", "^")
-PANELS: Final = (
-    ("GI", ("gi_closing", "gi_hull")),
-    ("GI, exposed", ("gi_exposed",)),
+_SHARED: Final = (
     ("gyri", ("n_gyri",)),
     ("growth time", ("visible_growth_time", "onset_growth_time")),
     ("sulcal depth [mm]", ("sulcal_depth_mm_max", "sulcal_depth_mm_mean")),
-    ("elastic energy [mJ/mm]", ("elastic_energy_mJ_per_mm",)),
 )
+PANELS: Final[dict[int, tuple[tuple[str, tuple[str, ...]], ...]]] = {
+    2: (
+        ("GI", ("gi_closing", "gi_hull")),
+        ("GI, exposed", ("gi_exposed",)),
+        *_SHARED,
+        ("elastic energy [mJ/mm]", ("elastic_energy_mJ_per_mm",)),
+    ),
+    3: (
+        ("GI by area", ("gi_area_closing", "gi_area_hull")),
+        ("GI of sections", ("gi_sections",)),
+        *_SHARED,
+        ("elastic energy [mJ]", ("elastic_energy_mJ",)),
+    ),
+}
 _RESOLUTIONS: Final = {
     "mesh": "distance of contour nodes [mm]",
     "increments": "increment / duration of growth",
     "contact": "contact distance [mm]",
 }
-_NAMES: Final = {metric.key: metric.name for metric in METRICS}
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +84,7 @@ class Shape:
 
 
 def write_pictures(convergence: Convergence, folder: Path) -> list[Path]:
-    """Write ``<subject>-metrics.png`` and ``<subject>-shapes.png`` for every subject.
+    """Write ``<subject>-metrics.png``, and in the plane ``<subject>-shapes.png``, for every subject.
 
     Parameters
     ----------
@@ -92,7 +102,10 @@ def write_pictures(convergence: Convergence, folder: Path) -> list[Path]:
     for family in convergence.families:
         if not any(level.is_complete for level in family.levels):
             continue
-        for kind, draw in (("metrics", metrics_figure), ("shapes", shapes_figure)):
+        drawn = {"metrics": metrics_figure}
+        if convergence.config.geometry.n_dim == 2:
+            drawn["shapes"] = shapes_figure
+        for kind, draw in drawn.items():
             files.append(folder / f"{family.subject}-{kind}.png")
             save_figure(draw(family), files[-1], dpi=200)
     return files
@@ -102,10 +115,14 @@ def metrics_figure(family: Family) -> Figure:
     """Every metric against what is halved from level to level; dashed, the limit where there is an order."""
     figure = Figure(figsize=(8.4, 4.8), layout="constrained", facecolor="white")
     FigureCanvasAgg(figure)
-    for axes, (label, keys) in zip(figure.subplots(2, 3).ravel(), PANELS, strict=True):
+    n_dim = family.levels[0].config.geometry.n_dim
+    for axes, (label, keys) in zip(figure.subplots(2, 3).ravel(), PANELS[n_dim], strict=True):
         _panel(axes, family, keys)
         axes.set_title(label, fontsize=9, loc="left")
-    figure.supxlabel(f"{_RESOLUTIONS[family.subject]} (finer to the right)", fontsize=9)
+    refined = _RESOLUTIONS[family.subject]
+    if family.subject == "mesh" and n_dim == 3:
+        refined = "edge on the outer surface [mm]"
+    figure.supxlabel(f"{refined} (finer to the right)", fontsize=9)
     return figure
 
 
@@ -153,10 +170,11 @@ def slices_figure(shapes: Sequence[Shape], names: Sequence[str], columns: int = 
 
 def _panel(axes: Axes, family: Family, keys: Sequence[str]) -> None:
     sizes = np.array([resolution(level.config, family.subject) for level in family.levels])
+    names = {metric.key: metric.name for metric in family.metrics}
     for key, hue, marker in zip(keys, HUES, MARKERS, strict=False):
         verdict = family.verdicts[key]
         values = np.array([np.nan if value is None else value for value in verdict.values])
-        axes.plot(sizes, values, marker=marker, color=hue, markersize=5, linewidth=1.2, label=_NAMES[key])
+        axes.plot(sizes, values, marker=marker, color=hue, markersize=5, linewidth=1.2, label=names[key])
         if verdict.limit is not None:
             axes.axhline(verdict.limit, color=hue, linewidth=0.9, linestyle="--")
     axes.set_xscale("log")

@@ -1,8 +1,8 @@
-"""Where theory lets the growing circle lose stability, as curves in the plane of two parameters."""
+"""Where theory lets the growing circle or sphere lose stability, as curves over two parameters."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import zip_longest
 from typing import Final
 
@@ -12,8 +12,9 @@ from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
 from gyrify.config import Config
+from gyrify.config.body_sections import PERIODIC
 from gyrify.errors import ConfigError, SolveError
-from gyrify.report.plot.dispersion import annulus_of
+from gyrify.run.validity.exact_bodies import round_body
 from gyrify.theory.margin import SmoothState, stability_margin
 from gyrify.theory.onset import Parameter, state_at
 
@@ -27,7 +28,7 @@ SCANNED: Final[dict[str, Parameter]] = {
     "geometry.cortical_thickness": "cortical_thickness",
     "material.stiffness_ratio": "stiffness_ratio",
 }
-# Parameters that the exact annulus knows.
+# Parameters that the exact annulus knows, and the sphere.
 COVERED: Final = (
     *SCANNED,
     "geometry.area",
@@ -60,7 +61,7 @@ class OnsetCurve:
 
 
 def onset_curve(config: Config, keys: tuple[str, str], spans: tuple[Span, Span]) -> OnsetCurve:
-    """Where the exact annulus loses (or gains) stability within two ranges.
+    """Where the exact annulus, or sphere, loses (or gains) stability within two ranges.
 
     Parameters
     ----------
@@ -77,9 +78,14 @@ def onset_curve(config: Config, keys: tuple[str, str], spans: tuple[Span, Span])
     """
     missing = [key for key in keys if key not in COVERED]
     scanned = next((key for key in SCANNED if key in keys), None)
-    if config.geometry.shape == "strip" or missing or scanned is None:
-        what = "strips" if config.geometry.shape == "strip" else " and ".join(missing or keys)
-        return OnsetCurve((), f"No onset curve: the exact annulus does not cover {what}.")
+    body, round_one, size = ("annulus", "circle", "area")
+    if config.geometry.n_dim == 3:
+        body, round_one, size = ("sphere", "sphere", "volume")
+    is_flat = config.geometry.shape in PERIODIC
+    if is_flat or missing or scanned is None:
+        flat = {"strip": "strips", "patch": "patches"}
+        what = flat[config.geometry.shape] if is_flat else " and ".join(missing or keys)
+        return OnsetCurve((), f"No onset curve: the exact {body} does not cover {what}.")
     along = keys.index(scanned)
     sections = _spaced(spans[1 - along], _SECTIONS)
     cuts = [_section(config, (keys[1 - along], at), scanned, spans[along]) for at in sections]
@@ -87,14 +93,15 @@ def onset_curve(config: Config, keys: tuple[str, str], spans: tuple[Span, Span])
     rows = np.array(list(zip_longest(*(cut.values for cut in cuts), fillvalue=np.nan)), dtype=np.float64)
     lines = [line for values in rows for line in _smooth(sections, values)]
     lines = [line[:, ::-1] if along == 0 else line for line in lines]
-    circle = "a circle" if config.geometry.shape == "circle" else "a circle of the same area"
+    same = "" if config.geometry.shape == round_one else f" of the same {size}"
+    circle = f"a {round_one}{same}"
     rest = _without_curve([cut.outcome for cut in cuts if not cut.values], len(cuts))
     if not lines and any(cut.values for cut in cuts):
         return OnsetCurve(
-            (), f"The exact annulus ({circle}) changes stability only at an edge of this range{rest}."
+            (), f"The exact {body} ({circle}) changes stability only at an edge of this range{rest}."
         )
     if not lines:
-        return OnsetCurve((), f"The exact annulus ({circle}) does not change stability in this range{rest}.")
+        return OnsetCurve((), f"The exact {body} ({circle}) does not change stability in this range{rest}.")
     return OnsetCurve(tuple(lines), f"Onset: exact, for {circle}, without dissipation{rest}.")
 
 
@@ -123,12 +130,13 @@ def _section(config: Config, other: tuple[str, float], key: str, span: Span) -> 
 
     def margin(value: float) -> float:
         nonlocal guess
-        guess = state_at(annulus, SCANNED[key], value, annulus.duration, guess)
+        guess = state_at(body, SCANNED[key], value, body.duration, guess)
         return stability_margin(guess).value
 
     values = _spaced(span, _SCAN).tolist()
     try:
-        annulus = annulus_of(config.replace(**{other[0]: float(other[1]), key: float(span[1])}))
+        there = round_body(config.replace(**{other[0]: float(other[1]), key: float(span[1])}))
+        body = replace(there, degree=type(there).degree)
         margins = [margin(value) for value in values]
         found = [
             float(brentq(margin, values[i], values[i + 1], rtol=_ACCURACY))

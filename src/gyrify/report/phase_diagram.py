@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from gyrify.report.layout import MM
 from gyrify.report.onset_curve import OnsetCurve
-from gyrify.report.study_data import Cell, axis_label, is_logarithmic
+from gyrify.report.study_data import INDEX, Cell, axis_label, is_logarithmic
 
 FloatArray = NDArray[np.float64]
 Box = tuple[float, float, float, float]
@@ -40,7 +40,12 @@ _ONSET: Final = "#d55e00"
 
 
 def phase_figure(
-    cells: Sequence[Cell], keys: tuple[str, str], onset: OnsetCurve, *, n_seeds: int = 1
+    cells: Sequence[Cell],
+    keys: tuple[str, str],
+    onset: OnsetCurve,
+    *,
+    n_seeds: int = 1,
+    index: str = INDEX,
 ) -> Figure:
     """Draw gyrification index and phenotype over two parameters.
 
@@ -54,6 +59,8 @@ def phase_figure(
         What theory says, drawn on top.
     n_seeds : int
         Largest number of runs in a cell, for the caption.
+    index : str
+        What the index is called.
 
     Returns
     -------
@@ -74,7 +81,7 @@ def phase_figure(
         for line in onset.lines:
             casing = [patheffects.withStroke(linewidth=3.4, foreground="white")]
             axes.plot(line[:, 0], line[:, 1], color=_ONSET, linewidth=1.6, path_effects=casing, zorder=4)
-    left.set_title("a  gyrification index (closing)", loc="left", fontsize=8)
+    left.set_title(f"a  {index}", loc="left", fontsize=8)
     right.set_title("b  phenotype", loc="left", fontsize=8)
     right.set_ylabel("")
     figure.colorbar(_scale(norm), ax=left, shrink=0.9, pad=0.02).ax.tick_params(labelsize=7)

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from gyrify.report.layout import MM
-from gyrify.report.study_data import Cell, axis_label
+from gyrify.report.study_data import INDEX, Cell, axis_label
 
 # Okabe and Ito's colours, told apart by every common colour vision; markers tell them apart too.
 HUES: Final = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#1f1f1f", "#f0e442")
@@ -22,7 +22,7 @@ MOST_LINES: Final = len(HUES)
 _WIDTH_MM, _HEIGHT_MM = 180.0, 80.0
 
 
-def sensitivity_figure(cells: Sequence[Cell], keys: Sequence[str]) -> Figure:
+def sensitivity_figure(cells: Sequence[Cell], keys: Sequence[str], index: str = INDEX) -> Figure:
     """Draw gyrification index and number of gyri against the dissipation number.
 
     Parameters
@@ -32,6 +32,8 @@ def sensitivity_figure(cells: Sequence[Cell], keys: Sequence[str]) -> Figure:
     keys : sequence of str
         Dotted keys of the parameters, the dissipation number first; a line for each combination of the
         others, eight at most.
+    index : str
+        What the index is called.
 
     Returns
     -------
@@ -50,7 +52,7 @@ def sensitivity_figure(cells: Sequence[Cell], keys: Sequence[str]) -> Figure:
         ordered = sorted((cell for cell in group if cell.gi), key=lambda cell: cell.at[0])
         _draw(left, ordered, [cell.gi for cell in ordered], style)
         _draw(right, ordered, [cell.gyri for cell in ordered], style)
-    for axes, label in ((left, "gyrification index (closing)"), (right, "gyri")):
+    for axes, label in ((left, index), (right, "gyri")):
         _set_axes(axes, label, smallest, any(cell.at[0] == 0.0 for cell in cells))
     right.yaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     if len(keys) > 1:

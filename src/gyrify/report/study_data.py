@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,8 @@ from gyrify.config.words import extra
 FloatArray = NDArray[np.float64]
 Row = Mapping[str, Any]
 
+INDEX: Final = "gyrification index (closing)"
+
 
 @dataclass(frozen=True)
 class Cell:
@@ -27,7 +29,7 @@ class Cell:
     at : tuple
         Values of the parameters.
     gi, gyri : tuple of float
-        Gyrification index (closing) and number of gyri of the runs that completed.
+        Gyrification index (closing; in space of areas) and number of gyri of the runs that completed.
     phenotype : str
         The most frequent one; empty where no run completed, or none has one.
     n_failed : int
@@ -82,12 +84,27 @@ def _is_finite(value: float | None) -> bool:
     return value is not None and math.isfinite(value)
 
 
+def _index(row: Row) -> float | None:
+    """Index by the closing, in space of areas."""
+    found: float | None = row["gi_closing"]
+    return row.get("gi_area_closing") if found is None else found
+
+
+def index_name(rows: Sequence[Row]) -> str:
+    """What the index of some rows is called."""
+    in_space = [row.get("gi_area_closing") is not None for row in rows]
+    if not any(in_space):
+        return INDEX
+    in_plane = any(row["gi_closing"] is not None for row in rows)
+    return "gyrification index (closing, in space of areas)" if in_plane else INDEX.replace(")", " of areas)")
+
+
 def _cell(at: tuple[Any, ...], group: Sequence[Row]) -> Cell:
-    whole = [row for row in group if row["status"] == "completed" and _is_finite(row["gi_closing"])]
+    whole = [row for row in group if row["status"] == "completed" and _is_finite(_index(row))]
     labels = [row["phenotype"] for row in whole if row.get("phenotype")]
     return Cell(
         at,
-        tuple(float(row["gi_closing"]) for row in whole),
+        tuple(float(_index(row)) for row in whole),  # type: ignore[arg-type]
         tuple(float(row["n_gyri"]) for row in whole),
         max(labels, key=labels.count) if labels else "",
         len(group) - len(whole),

@@ -11,7 +11,7 @@ from gyrify.report.figures import save_figure
 from gyrify.report.onset_curve import onset_curve
 from gyrify.report.phase_diagram import phase_figure
 from gyrify.report.sensitivity import MOST_LINES, NUMBER, sensitivity_figure
-from gyrify.report.study_data import Row, cells, numeric, varied
+from gyrify.report.study_data import Row, cells, index_name, numeric, varied
 from gyrify.study import final_state, read_results
 
 
@@ -57,7 +57,8 @@ def _phase(rows: list[Row], folder: Path) -> Figure | None:
     (x, y), places = keys, list(zip(*(cell.at for cell in found), strict=True))
     spans = tuple((float(min(values)), float(max(values))) for values in places)
     onset = onset_curve(_config(rows, folder), (x, y), (spans[0], spans[1]))
-    return phase_figure(found, (x, y), onset, n_seeds=max(len(c.gi) + c.n_failed for c in found))
+    seeds = max(len(c.gi) + c.n_failed for c in found)
+    return phase_figure(found, (x, y), onset, n_seeds=seeds, index=index_name(rows))
 
 
 def _sensitivity(rows: list[Row]) -> Figure | None:
@@ -67,7 +68,7 @@ def _sensitivity(rows: list[Row]) -> Figure | None:
     ordered = [NUMBER, *(key for key in keys if key != NUMBER)]
     found = cells(rows, ordered)
     is_drawn = len({cell.at[1:] for cell in found}) <= MOST_LINES
-    return sensitivity_figure(found, ordered) if is_drawn else None
+    return sensitivity_figure(found, ordered, index_name(rows)) if is_drawn else None
 
 
 def _config(rows: list[Row], folder: Path) -> Config:

@@ -24,12 +24,11 @@ def to_row(onset: Onset) -> tuple[Any, ...]:
     return (*numbers, *arrays)
 
 
-def from_row(row: tuple[Any, ...]) -> Onset:
-    """Onset of a row of the table."""
+def from_row(row: tuple[Any, ...], n_dim: int) -> Onset:
+    """Onset of a row of the table, of points in the plane (2) or in space (3)."""
     _, time, low, high, eigenvalue, mode_number, wavelength, displacement, vector = row
-    return Onset(
-        time, (low, high), eigenvalue, mode_number, wavelength, _points(displacement), _points(vector)
-    )
+    state, mode = _points(displacement, n_dim), _points(vector, n_dim)
+    return Onset(time, (low, high), eigenvalue, mode_number, wavelength, state, mode)
 
 
 def add_changes(connection: sqlite3.Connection, changes: Sequence[StabilityChange]) -> None:
@@ -65,15 +64,15 @@ def read_changes(connection: sqlite3.Connection) -> tuple[StabilityChange, ...]:
     return tuple(StabilityChange(time, (low, high), *rest) for _, time, low, high, *rest in rows)
 
 
-def read_onset(connection: sqlite3.Connection) -> Onset | None:
+def read_onset(connection: sqlite3.Connection, n_dim: int) -> Onset | None:
     """The onset on record; what its mode moves stands with the change of stability that it is."""
     row = connection.execute("SELECT * FROM onset").fetchone()
     if row is None:
         return None
-    onset = from_row(row)
+    onset = from_row(row, n_dim)
     kinds = (change.kind for change in read_changes(connection) if change.growth_time == onset.growth_time)
     return replace(onset, kind=next(kinds, onset.kind))
 
 
-def _points(blob: bytes) -> FloatArray:
-    return np.frombuffer(blob, dtype="<f8").astype(np.float64).reshape(-1, 2)
+def _points(blob: bytes, n_dim: int) -> FloatArray:
+    return np.frombuffer(blob, dtype="<f8").astype(np.float64).reshape(-1, n_dim)

@@ -96,7 +96,7 @@ class StoredPoint:
 
     @property
     def contour(self) -> FloatArray:
-        """(n_contour, n_dim) deformed outer contour, or points of the outer surface [mm], of the last state."""
+        """(n_contour, n_dim) deformed outer contour, or points of the surface [mm], of the last state."""
         return self.points[self.mesh.contour]
 
     @property

@@ -10,10 +10,14 @@ from itertools import pairwise
 from gyrify.base.arguments import real_number
 from gyrify.base.pool import MAX_WORKERS
 from gyrify.config import Config, ConfigLike, as_config
+from gyrify.config.body_sections import PERIODIC
+from gyrify.config.space_checks import finer
 from gyrify.errors import ConfigError
 from gyrify.run.limits import Watch
 from gyrify.run.validity.expected import expected_onset
 from gyrify.run.validity.locking import locking
+from gyrify.run.validity.ranges import contour_spacing
+from gyrify.run.validity.space_resolution import EDGES_PER_WAVE
 from gyrify.threshold.crossings import Crossing, Definition, Scanned, Threshold, main_crossing
 from gyrify.threshold.scanned_parameter import PARAMETERS, Range, scan_values
 from gyrify.threshold.stability_scan import StabilityScan
@@ -36,7 +40,7 @@ def critical_growth(
     tolerance: float | None = None,
     workers: int = 1,
 ) -> Threshold:
-    """Find the critical value of one parameter.
+    """Find the critical value of one parameter, of a body in the plane or in space.
 
     Stability need not be monotone in the parameter, so the range is scanned first and every change is
     refined; two crossings between neighbouring points of the scan are not seen.
@@ -49,12 +53,12 @@ def critical_growth(
         ``growth.ratio``, ``growth.time``, ``material.stiffness_ratio`` or ``geometry.cortical_thickness``.
     definition : {"stability", "visible"}
         ``stability``: where the smooth equilibrium at the end of growth, without jitter and dissipation,
-        changes stability. ``visible``: where the gyrification index by the closing passes ``level`` after a
-        full run with the configuration's jitter and dissipation.
+        changes stability. ``visible``: where the gyrification index by the closing (of areas in space)
+        passes ``level`` after a full run with the configuration's jitter and dissipation.
     range : (float, float), optional
         Values to scan between, in the unit of the parameter.
     level : float
-        Gyrification index above which a slice counts as folded [-], > 1; `visible` only.
+        Gyrification index above which a body counts as folded [-], > 1; `visible` only.
     points : int, optional
         Values to scan.
     tolerance : float, optional
@@ -113,12 +117,13 @@ def _find(
     unsolved = _unsolved(values, scanned)
     if visible and parameter == "growth.time":  # one run, read at its own increments
         unsolved = ()
+    is_round = config.geometry.n_dim == 3 and config.geometry.shape not in PERIODIC
     exact = None if visible else expected_crossings(config, parameter, values)
     return Threshold(
         parameter=parameter,
         definition=definition,
         critical_value=main.value if main else None,
-        reason="" if main else _reason(parameter, scanned, level, visible, unsolved, exact),
+        reason="" if main else _reason(config, parameter, scanned, level, visible, unsolved, exact),
         notes=(*scan.notes, *edges),
         warnings=_warnings(config, parameter, crossings, exact, unsolved),
         unsolved=unsolved,
@@ -132,6 +137,7 @@ def _find(
         evaluations=scan.evaluations,
         wall_s=0.0,
         at_edge=bool(edges),
+        counted="gyri" if visible else "degree" if is_round else "waves",
     )
 
 
@@ -203,10 +209,25 @@ def _warnings(
     if unsolved:
         found.append(
             f"{_listed(unsolved)} of {parameter} could not be solved: a crossing there is not seen. "
-            "Scan another range, or raise mesh.n_around."
+            f"Scan another range, or {finer(config)}."
         )
+    found += _coarse_beside(config, crossings)
     advice = "Change the element first." if locking(config) else _FINER
     return (*found, *differences(parameter, expected_onset(config).theory, exact, crossings, advice))
+
+
+def _coarse_beside(config: Config, crossings: Sequence[Crossing]) -> list[str]:
+    """Warn of waves that few edges of a surface in space make up: the crossing is the mesh's as well."""
+    if config.geometry.n_dim == 2:
+        return []
+    edge = contour_spacing(config)
+    return [
+        f"The wave of {crossing.wavelength_mm:.3g} mm at {crossing.value:.4g} is {number:.2g} edges of "
+        f"{edge:.3g} mm long ({EDGES_PER_WAVE:g} are needed): a finer mesh moves the crossing. Lower "
+        "mesh.edge_length, or set mesh.refine = 1."
+        for crossing in crossings
+        if crossing.wavelength_mm is not None and (number := crossing.wavelength_mm / edge) < EDGES_PER_WAVE
+    ]
 
 
 def _listed(values: Sequence[float]) -> str:
@@ -215,6 +236,7 @@ def _listed(values: Sequence[float]) -> str:
 
 
 def _reason(
+    config: Config,
     parameter: str,
     scanned: Sequence[Scanned],
     level: float,
@@ -227,7 +249,7 @@ def _reason(
     if len(scanned) < 2:
         return (
             f"Nothing is known: no two points of {parameter} could be computed. "
-            "Scan another range, or raise mesh.n_around."
+            f"Scan another range, or {finer(config)}."
         )
     unit = PARAMETERS[parameter].unit
     low, high = scanned[0].value, scanned[-1].value
@@ -240,7 +262,7 @@ def _reason(
     if unsolved:
         return (
             f"Whether anything is critical is unknown: {_listed(unsolved)} could not be solved. {outcome} at "
-            "the others. Scan another range, or raise mesh.n_around."
+            f"the others. Scan another range, or {finer(config)}."
         )
     if exact:
         return (

@@ -8,6 +8,7 @@ from typing import Any, Literal
 from gyrify.base.markup import html_rows
 
 Definition = Literal["stability", "visible"]
+Counted = Literal["waves", "degree", "gyri"]
 Becomes = Literal["unstable", "stable", "folded", "smooth"]
 
 
@@ -24,9 +25,10 @@ class Crossing:
     bracket : (float, float)
         The closest values known to lie on either side.
     mode_number : int or None
-        Waves of the mode along the contour; for visible folds, the number of gyri.
+        Waves of the mode along the contour, in space its degree (see
+        `gyrify.run.onset.space_waves.surface_wave`); for visible folds, the number of gyri.
     wavelength_mm : float or None
-        Deformed contour over the mode number [mm].
+        Deformed contour over the mode number, in space the length of the wave [mm].
     growth_time : float
         Growth time [time].
     kind : str or None
@@ -99,6 +101,9 @@ class Threshold:
     at_edge : bool
         Whether the answer may lie outside of what was scanned: the slice is unstable (or folded) at the
         lowest value already, or changes at an end of the range. A note says which.
+    counted : {"waves", "degree", "gyri"}
+        What ``mode_number`` is: waves along the contour (of a patch, along its period in x), the degree of
+        spherical harmonics, or gyri.
     """
 
     parameter: str
@@ -118,14 +123,21 @@ class Threshold:
     evaluations: int
     wall_s: float
     at_edge: bool = False
+    counted: Counted = "waves"
+
+    def wave(self, crossing: Crossing | None = None) -> str:
+        """What folds at a crossing, at the critical one by default: "19 waves of 11.9 mm", or nothing."""
+        at = crossing or self
+        if at.mode_number is None or at.wavelength_mm is None:
+            return ""
+        if self.counted == "degree":
+            return f"degree {at.mode_number}, waves of {at.wavelength_mm:.3g} mm"
+        return f"{at.mode_number} {self.counted} of {at.wavelength_mm:.3g} mm"
 
     def __repr__(self) -> str:
         if self.critical_value is None:
             return f"Threshold({self.parameter}, {self.definition}: nothing is critical)"
-        wave = ""
-        if self.mode_number is not None and self.wavelength_mm is not None:
-            waves = "gyri" if self.definition == "visible" else "waves"
-            wave = f", {self.mode_number} {waves} of {self.wavelength_mm:.3g} mm"
+        wave = f", {self.wave()}" if self.wave() else ""
         crossings = f"; {len(self.crossings)} crossings" if len(self.crossings) > 1 else ""
         return f"Threshold({self.parameter} = {self.critical_value:.6g}, {self.definition}{wave}{crossings})"
 

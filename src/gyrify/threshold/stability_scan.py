@@ -147,7 +147,7 @@ class StabilityScan:
         return Crossing(value, becomes, bracket, wave.mode_number, wave.wavelength or None, time, wave.kind)
 
     def ends(self, scanned: Sequence[Scanned]) -> list[Crossing]:
-        """Where the smooth state of a body in space ends, stable until then, as its lowest eigenvalue vanishes.
+        """Where the smooth state of a body in space ends, stable, as its lowest eigenvalue vanishes.
 
         Modes of even degree on a sphere have a cubic term in their energy. A mesh that is not as symmetric as
         the sphere turns their bifurcation into a limit point: the branch turns back there, and beyond it no

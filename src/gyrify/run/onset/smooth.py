@@ -108,7 +108,7 @@ class SmoothBranch:
         if not self.known:
             raise SolveError(
                 f"No smooth state is known to reach {value:.6g} from: every one that was found is folded.",
-                "Raise mesh.n_around: on a coarse mesh the smooth state may fold gradually.",
+                "Refine the mesh (mesh.refine = 1): on a coarse one the smooth state may fold gradually.",
             )
         near = min(self.known.values(), key=lambda state: abs(state.value - value))
         state = self._try(value, near)
@@ -116,7 +116,7 @@ class SmoothBranch:
             if halvings == 0:
                 raise SolveError(
                     f"The smooth state is lost between {near.value:.6g} and {value:.6g}.",
-                    "Narrow the range, or raise mesh.n_around.",
+                    "Narrow the range, or refine the mesh (mesh.refine = 1).",
                 )
             self.at(0.5 * (near.value + value), halvings - 1)
             return self.at(value, halvings - 1)

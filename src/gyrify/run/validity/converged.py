@@ -111,14 +111,13 @@ def convergence(config: Config, gi_closing: float, *, is_complete: bool) -> dict
 def command(config: Config) -> str:
     """Command that checks the mesh, in the folder of the run.
 
-    Its finest level is at least twice as fine as the run's mesh, as far as `mesh.refine` allows. In space it
-    is a run on a mesh twice as fine, to compare with.
+    Its finest level is at least twice as fine as the run's mesh, as far as `mesh.refine` allows. In space,
+    where each level has eight times the cells of the one before, there are two levels.
     """
-    if config.geometry.n_dim == 3:
-        return f"gyrify run config.toml --set mesh.refine={config.mesh.refine + 1}"
-    first = min(config.mesh.refine, _MAX_REFINE - 2)
+    n_levels = 3 if config.geometry.n_dim == 2 else 2
+    first = min(config.mesh.refine, _MAX_REFINE - n_levels + 1)
     start = "" if first == config.mesh.refine else f" --set mesh.refine={first}"
-    return f"gyrify converge config.toml --of mesh{start}"
+    return f"gyrify converge config.toml --of mesh{'' if n_levels == 3 else ' --levels 2'}{start}"
 
 
 def mark(converged: Mapping[str, Any], n_warnings: int = 0) -> str:
