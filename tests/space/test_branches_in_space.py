@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from solids import config
 from test_thresholds_in_space import FILM
 
 from gyrify.errors import SolveError
-from gyrify.run.simulation import simulate
-from gyrify.run.summary import summarise
+from gyrify.run.running import Progress
+from gyrify.run.simulation import resume, simulate
+from gyrify.run.summary import summarise, write_metrics, write_summary
+from gyrify.verify.recheck import verify
 
 ALONE = {
     **FILM,
@@ -45,6 +49,28 @@ def test_a_branch_is_followed_to_the_chosen_side(sign: int) -> None:
     scale = (np.mean(heights[-1]) - 20.0) / 20.0
     rising[:, 2] = history.mesh.points[:, 2] * scale
     assert folded < energy.evaluate(rising, 0).value
+
+
+def test_a_followed_branch_is_taken_up_to_the_same_bytes_and_verified(tmp_path: Path) -> None:
+    class Enough(Exception):
+        pass
+
+    def stop(progress: Progress) -> None:
+        if progress.state.index == 5:  # the first one past the onset
+            raise Enough
+
+    body = config(ALONE, **{"stability.follow_branch": True})
+    with pytest.raises(Enough):
+        simulate(body, tmp_path / "cut", observers=[stop])
+    resumed = resume(tmp_path / "cut")
+    assert resumed.result_hash == simulate(body).result_hash
+    assert resumed.onset is not None
+    assert resumed.onset.vector.shape == resumed.mesh.points.shape
+    write_metrics(resumed, tmp_path / "cut" / "metrics.csv")
+    write_summary(summarise(resumed), tmp_path / "cut" / "summary.json")
+    found = verify(tmp_path / "cut")
+    assert [check.sentence for check in found.checks if not check.passed] == []
+    assert {"energy balance", "descent", "metrics.csv"} <= {check.name for check in found.checks}
 
 
 def test_without_a_side_the_run_ends_with_the_evidence() -> None:

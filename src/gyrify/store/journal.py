@@ -207,9 +207,8 @@ class Journal:
     @property
     def onset(self) -> Onset | None:
         """Where the path first lost stability, if it is known to have."""
-        n_dim = self.n_dim
         with translated(self.name):
-            return onset_rows.read_onset(self._connection, n_dim)
+            return onset_rows.read_onset(self._connection, self.n_dim)
 
     @property
     def stability_changes(self) -> tuple[StabilityChange, ...]:

@@ -10,7 +10,6 @@ from typing import Any, Final
 import numpy as np
 
 from gyrify.solve.stability import Onset, StabilityChange
-from gyrify.solve.types import FloatArray
 from gyrify.store.tables import CHANGES
 
 INSERT_CHANGE: Final = "INSERT INTO stability_changes VALUES (NULL, ?, ?, ?, ?, ?, ?, ?, ?)"
@@ -25,9 +24,12 @@ def to_row(onset: Onset) -> tuple[Any, ...]:
 
 
 def from_row(row: tuple[Any, ...], n_dim: int) -> Onset:
-    """Onset of a row of the table, of points in the plane (2) or in space (3)."""
+    """Onset of a row of the table, of a body in the plane (2) or in space (3)."""
     _, time, low, high, eigenvalue, mode_number, wavelength, displacement, vector = row
-    state, mode = _points(displacement, n_dim), _points(vector, n_dim)
+    state, mode = (
+        np.frombuffer(blob, dtype="<f8").astype(np.float64).reshape(-1, n_dim)
+        for blob in (displacement, vector)
+    )
     return Onset(time, (low, high), eigenvalue, mode_number, wavelength, state, mode)
 
 
@@ -72,7 +74,3 @@ def read_onset(connection: sqlite3.Connection, n_dim: int) -> Onset | None:
     onset = from_row(row, n_dim)
     kinds = (change.kind for change in read_changes(connection) if change.growth_time == onset.growth_time)
     return replace(onset, kind=next(kinds, onset.kind))
-
-
-def _points(blob: bytes, n_dim: int) -> FloatArray:
-    return np.frombuffer(blob, dtype="<f8").astype(np.float64).reshape(-1, n_dim)

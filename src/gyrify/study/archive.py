@@ -25,6 +25,7 @@ from gyrify.config.words import shorten
 from gyrify.errors import HistoryError
 from gyrify.metrics.gyrification import index_of
 from gyrify.run.body_measures import surface_of
+from gyrify.run.onset.visible_time import visible_index
 from gyrify.run.summary import measure_state
 from gyrify.store.files import read_facts, refuse_link, whole_file
 from gyrify.store.history import History
@@ -137,18 +138,23 @@ def _indices(history: History) -> tuple[FloatArray, FloatArray]:
     """Gyrification index of every state, by the closing and by the hull."""
     radius = history.config.metrics.closing_radius
     if history.mesh.n_dim == 3:
-        surfaces = [
-            surface_of(history.mesh, history.points(index), history.config.metrics)
-            for index in range(len(history))
-        ]
-        closing = [surface.area / surface.closing.area for surface in surfaces]
-        return np.array(closing), np.array([surface.area / surface.hull_area for surface in surfaces])
+        return _indices_of_areas(history)
     if history.mesh.period is not None:
         states = [measure_state(history, index) for index in range(len(history))]
         return np.array([s.gi_closing for s in states]), np.array([s.gi_hull for s in states])
     contours = [history.contour(index) for index in range(len(history))]
     closing = [index_of(contour, "closing", radius) for contour in contours]
     return np.array(closing), np.array([index_of(contour, "hull", radius) for contour in contours])
+
+
+def _indices_of_areas(history: History) -> tuple[FloatArray, FloatArray]:
+    """The same in space; the closing takes a second, and is spared where nothing is folded by the hull."""
+    mesh, chosen, last = history.mesh, history.config.metrics, measure_state(history)
+    states = [history.points(index) for index in range(len(history) - 1)]
+    surfaces = [surface_of(mesh, x, chosen) for x in states]
+    hull = [surface.area / surface.hull_area for surface in surfaces]
+    closing = [visible_index(mesh, x, chosen) for x in states]
+    return np.array([*closing, last.gi_area_closing]), np.array([*hull, last.gi_area_hull])
 
 
 @dataclass(frozen=True)
