@@ -195,8 +195,6 @@ def test_what_is_not_built_says_so(folder: Path) -> None:
     for attempt in (
         lambda: gyrify.plot(brain),
         lambda: run_page(brain, "x"),
-        lambda: gyrify.converge(brain.config),
-        lambda: gyrify.critical_growth(brain.config),
         lambda: gyrify.animate(brain, folder / "x.gif"),
     ):
         with pytest.raises(ConfigError, match="in space"):
