@@ -112,7 +112,7 @@ def test_pictures_and_tables_show_the_index_of_areas(done: StudyResult, capsys: 
     rows = read_results(done.folder).to_pylist()
     assert [len(cell.gi) for cell in cells(rows, KEYS)] == [1, 1, 1, 1]
     assert cells(rows, KEYS)[0].gi[0] == rows[0]["gi_area_closing"]
-    assert index_name(rows) == "gyrification index (closing of areas)"
+    assert index_name(rows) == "gyrification index (closing, by area)"
     assert [path.name for path in write_study_pictures(done.folder)] == ["phase-diagram.png"]
     assert main(["table", str(done.folder)]) == 0
     printed = capsys.readouterr().out
@@ -142,5 +142,5 @@ def test_labels_are_those_that_mean_the_same_in_space(done: StudyResult) -> None
     assert (shallow.label, shallow.because) == ("lissencephaly", "depth = 0.4 < 0.5")
     assert set(shallow.numbers) == {"hull", "depth", "crown_fundus"}
     assert classify({**row, "gi_area_hull": 1.004, "sulcal_depth_mm_mean": 0.4}, 1.0).label == "smooth"
-    with pytest.raises(ConfigError, match="asks for gyri .* no meaning in space"):
+    with pytest.raises(ConfigError, match=r"asks for gyri .* no meaning in space"):
         classify({**row, "sulcal_depth_mm_mean": 0.6}, 1.0)

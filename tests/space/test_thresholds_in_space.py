@@ -1,4 +1,4 @@
-"""Thresholds of bodies in space: against exact theory, along every parameter, and where a smooth state ends."""
+"""Thresholds of bodies in space: against exact theory, for every parameter, and where smooth states end."""
 
 from __future__ import annotations
 

@@ -177,6 +177,11 @@ def _panel(axes: Axes, family: Family, keys: Sequence[str]) -> None:
         axes.plot(sizes, values, marker=marker, color=hue, markersize=5, linewidth=1.2, label=names[key])
         if verdict.limit is not None:
             axes.axhline(verdict.limit, color=hue, linewidth=0.9, linestyle="--")
+    if all(value is None for key in keys for value in family.verdicts[key].values):
+        axes.clear()
+        axes.set_axis_off()
+        axes.text(0.5, 0.5, "no level has a value", ha="center", va="center", fontsize=8, color="0.4")
+        return
     axes.set_xscale("log")
     axes.invert_xaxis()
     axes.xaxis.set_major_locator(FixedLocator(list(sizes)))

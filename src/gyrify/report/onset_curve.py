@@ -95,13 +95,12 @@ def onset_curve(config: Config, keys: tuple[str, str], spans: tuple[Span, Span])
     lines = [line[:, ::-1] if along == 0 else line for line in lines]
     same = "" if config.geometry.shape == round_one else f" of the same {size}"
     circle = f"a {round_one}{same}"
+    exact = f"The exact {body}" if body == circle.removeprefix("a ") else f"The exact {body} ({circle})"
     rest = _without_curve([cut.outcome for cut in cuts if not cut.values], len(cuts))
     if not lines and any(cut.values for cut in cuts):
-        return OnsetCurve(
-            (), f"The exact {body} ({circle}) changes stability only at an edge of this range{rest}."
-        )
+        return OnsetCurve((), f"{exact} changes stability only at an edge of this range{rest}.")
     if not lines:
-        return OnsetCurve((), f"The exact {body} ({circle}) does not change stability in this range{rest}.")
+        return OnsetCurve((), f"{exact} does not change stability in this range{rest}.")
     return OnsetCurve(tuple(lines), f"Onset: exact, for {circle}, without dissipation{rest}.")
 
 

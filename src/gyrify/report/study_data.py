@@ -96,7 +96,7 @@ def index_name(rows: Sequence[Row]) -> str:
     if not any(in_space):
         return INDEX
     in_plane = any(row["gi_closing"] is not None for row in rows)
-    return "gyrification index (closing, in space of areas)" if in_plane else INDEX.replace(")", " of areas)")
+    return f"gyrification index (closing{'; in space by area' if in_plane else ', by area'})"
 
 
 def _cell(at: tuple[Any, ...], group: Sequence[Row]) -> Cell:
