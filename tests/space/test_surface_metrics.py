@@ -7,6 +7,7 @@ import pytest
 import shapely
 
 from gyrify.mesh.nested_surface import icosphere
+from gyrify.metrics import Measures
 from gyrify.metrics.measure_surface import DeformedSurface
 from gyrify.metrics.surface import (
     enclosed_volume,
@@ -74,7 +75,7 @@ def test_laplacian_knows_the_degree_of_a_harmonic(degree: int) -> None:
 
 
 def test_a_convex_body_is_its_own_hull_and_closing() -> None:
-    found = measured(*ball()).measures()
+    found = Measures.of(measured(*ball()))
     assert found.gi_area_hull == pytest.approx(1.0, abs=1e-9)
     assert found.gi_area_closing == pytest.approx(1.0, abs=5e-3)
     assert found.gi_sections == pytest.approx(1.0, abs=2e-3)
@@ -127,7 +128,7 @@ def test_closing_of_a_patch_is_that_of_one_period() -> None:
             r, s = (a + 1) % n * n + (b + 1) % n, a * n + (b + 1) % n
             faces += [(p, q, r), (p, r, s)]
     surface = DeformedSurface(x, np.array(faces), x, np.array(faces), 3.0, 0.3, (20.0, 20.0), reference)
-    found = surface.measures()
+    found = Measures.of(surface)
     t = np.linspace(0.0, 1.0, 20001)
     slope = 0.8 * 2.0 * np.pi * 3 / 20.0 * np.sin(2.0 * np.pi * 3 * t)
     arc = np.mean(np.sqrt(1.0 + slope**2))
@@ -168,15 +169,15 @@ def test_measures_do_not_change_with_place_and_turn_and_scale_with_size(rng: np.
     x, faces = bumpy(4.0)
     turn, _ = np.linalg.qr(rng.standard_normal((3, 3)))
     turn *= np.sign(np.linalg.det(turn))
-    one = measured(x, faces, 12.0).measures()
-    other = measured(x @ turn.T + np.array([5.0, -3.0, 11.0]), faces, 12.0).measures()
+    one = Measures.of(measured(x, faces, 12.0))
+    other = Measures.of(measured(x @ turn.T + np.array([5.0, -3.0, 11.0]), faces, 12.0))
     for name in ("gi_area_hull", "surface_area", "volume", "mean_curvature"):
         assert getattr(other, name) == pytest.approx(getattr(one, name), rel=1e-9)
     assert one.n_gyri == 7 == other.n_gyri
     assert other.sulcal_depth_max == pytest.approx(one.sulcal_depth_max, abs=0.04 * 12.0)
     for name in ("gi_area_closing", "thickness_crown", "wavelength"):
         assert getattr(other, name) == pytest.approx(getattr(one, name), rel=0.02)
-    large = DeformedSurface(2.0 * x, faces, 1.8 * x, faces, 24.0, 0.6).measures()
+    large = Measures.of(DeformedSurface(2.0 * x, faces, 1.8 * x, faces, 24.0, 0.6))
     assert large.gi_area_closing == pytest.approx(one.gi_area_closing, rel=1e-6)
     assert large.gi_sections == pytest.approx(one.gi_sections, rel=1e-9)
     assert large.sulcal_depth_max == pytest.approx(2.0 * one.sulcal_depth_max, rel=1e-6)
@@ -242,7 +243,7 @@ def test_index_of_a_section_is_that_of_the_plane() -> None:
 
 
 def test_measures_are_told_by_their_names() -> None:
-    found = measured(*bumpy()).measures()
+    found = Measures.of(measured(*bumpy()))
     nested = found.as_dict()
     assert set(nested["gi"]) == {"area", "sections", "closing_radius_mm"}
     assert set(nested["gi"]["area"]) == {"hull", "closing"}

@@ -10,7 +10,6 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from gyrify.base.tiling import tiled
-from gyrify.metrics.measures import Measures
 from gyrify.metrics.surface import (
     FloatArray,
     IntArray,
@@ -61,10 +60,6 @@ class DeformedSurface:
     periods: tuple[float, float] | None = None
     reference: FloatArray = field(default_factory=lambda: np.empty((0, 3)))
     n_dim: ClassVar[int] = 3
-
-    def measures(self) -> Measures:
-        """Every quantity of the state."""
-        return Measures.of(self)
 
     @cached_property
     def corners(self) -> FloatArray:
