@@ -220,13 +220,13 @@ def _coarse_beside(config: Config, crossings: Sequence[Crossing]) -> list[str]:
     """Warn of waves that few edges of a surface in space make up: the crossing is the mesh's as well."""
     if config.geometry.n_dim == 2:
         return []
-    edge = contour_spacing(config)
+    edge, needed = contour_spacing(config), EDGES_PER_WAVE[config.mesh.element]
     return [
         f"The wave of {crossing.wavelength_mm:.3g} mm at {crossing.value:.4g} is {number:.2g} edges of "
-        f"{edge:.3g} mm long ({EDGES_PER_WAVE:g} are needed): a finer mesh moves the crossing. Lower "
+        f"{edge:.3g} mm long ({needed:g} are needed): a finer mesh moves the crossing. Lower "
         "mesh.edge_length, or set mesh.refine = 1."
         for crossing in crossings
-        if crossing.wavelength_mm is not None and (number := crossing.wavelength_mm / edge) < EDGES_PER_WAVE
+        if crossing.wavelength_mm is not None and (number := crossing.wavelength_mm / edge) < needed
     ]
 
 
