@@ -10,7 +10,7 @@ import numpy as np
 
 from gyrify.config import Config
 from gyrify.errors import SolveError
-from gyrify.run.onset.crossing import LowestEigenvalue
+from gyrify.run.onset.crossing import LowestEigenvalue, limit_point
 from gyrify.run.onset.mode_kinds import Wave, wave_of
 from gyrify.run.onset.smooth import IDEAL, SmoothBranch, SmoothState, grown
 from gyrify.threshold.crossings import Becomes, Crossing, Scanned
@@ -149,9 +149,7 @@ class StabilityScan:
     def ends(self, scanned: Sequence[Scanned]) -> list[Crossing]:
         """Where the smooth state of a body in space ends, stable, as its lowest eigenvalue vanishes.
 
-        Modes of even degree on a sphere have a cubic term in their energy. A mesh that is not as symmetric as
-        the sphere turns their bifurcation into a limit point: the branch turns back there, and beyond it no
-        smooth state is left. Near it the square of the eigenvalue is linear.
+        See `gyrify.run.onset.crossing.limit_point`.
         """
         if self._config.geometry.n_dim == 2:
             return []
@@ -167,13 +165,9 @@ class StabilityScan:
         if before is None:
             return None
         with suppress(SolveError):
-            first, last = self.eigenvalue(before) ** 2, self.eigenvalue(stable) ** 2
-            if last >= first:
+            value = limit_point(before, stable, self.eigenvalue(before), self.eigenvalue(stable))
+            if value is None or abs(value - stable) > abs(missing - stable):
                 return None
-            step = last * (stable - before) / (first - last)
-            if abs(step) > abs(missing - stable):
-                return None
-            value = stable + step
             self.notes.append(
                 f"The smooth state ends at {value:.6g}: its lowest eigenvalue vanishes there as at a limit "
                 "point, since the mesh is less symmetric than the body. A finer mesh moves it."

@@ -146,3 +146,14 @@ class LowestEigenvalue:
             if before < value < after:
                 return value
         return 0.5 * (before + after)
+
+
+def limit_point(before: float, last: float, first_eigenvalue: float, last_eigenvalue: float) -> float | None:
+    """Value at which a stable branch turns back, from its last two states; None if they do not tell.
+
+    In space the bifurcation of a symmetric body is no fork: folds inwards and outwards are not alike. A mesh
+    that is less symmetric than the body turns it into a limit point, near which the square of the lowest
+    eigenvalue is linear, and beyond which no smooth state is left.
+    """
+    first, end = first_eigenvalue**2, last_eigenvalue**2
+    return last + (last - before) * end / (first - end) if end < first else None

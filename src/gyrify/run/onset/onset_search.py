@@ -14,7 +14,7 @@ import numpy as np
 
 from gyrify.errors import SolveError
 from gyrify.model.slice import Slice
-from gyrify.run.onset.crossing import LowestEigenvalue, Root
+from gyrify.run.onset.crossing import LowestEigenvalue, Root, limit_point
 from gyrify.run.onset.mode_kinds import outwards, wave_of
 from gyrify.run.onset.smooth import IDEAL, SmoothBranch, SmoothState
 from gyrify.solve.stability import Onset, StabilityChange
@@ -99,19 +99,13 @@ class OnsetSearch:
                 self._end_at_limit_point(fraction)
 
     def _end_at_limit_point(self, failed: float) -> None:
-        """Take the end of a stable branch as the onset, if its lowest eigenvalue vanishes there.
-
-        In space the surfaces that a ball or a patch folds into are not alike inwards and outwards, so that a
-        mesh that is not symmetric itself makes a limit point of the bifurcation: next to it the square of the
-        eigenvalue is linear, and beyond it there is no state to find.
-        """
+        """Take the end of a stable branch as the onset, if its lowest eigenvalue vanishes there."""
         before, last = sorted(self._branch.known)[-2:]
         try:
-            start, end = self._lowest.at(before), self._lowest.at(last)
+            value = limit_point(before, last, self._lowest.at(before), self._lowest.at(last))
         except SolveError:
             return
-        value = last + (last - before) * end**2 / (start**2 - end**2) if start > end > 0.0 else np.inf
-        if value < failed:
+        if value is not None and value < failed:
             root = Root(value, (last, failed), self._branch.at(last), self._lowest.pairs[last], False)
             self.onset = self._onset(root)
             wave, time = self.onset, self._duration
