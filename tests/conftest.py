@@ -12,7 +12,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 import pytest
-from slices import FOLDING, TINY
+from slices import FOLDING, LUMP, TINY
 
 from gyrify.config import Config
 from gyrify.run.simulation import simulate
@@ -41,6 +41,12 @@ def tiny() -> Config:
 def folded(folding: Config) -> History:
     """A run whose sulci are in contact."""
     return simulate(folding)
+
+
+@pytest.fixture(scope="session")
+def lump() -> History:
+    """A run of a body in space."""
+    return simulate(Config().with_overrides(LUMP))
 
 
 @pytest.fixture(scope="session")

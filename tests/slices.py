@@ -18,3 +18,20 @@ TINY = {
     "mesh.n_cortex_layers": 2,
     "solver.increments": 8,
 }
+# A hollow body in space that is cheap and shows every field.
+LUMP = {
+    "geometry.shape": "ellipsoid",
+    "geometry.semi_axes": (24.0, 20.0, 18.0),
+    "geometry.hole_fraction": 0.3,
+    "geometry.cortical_thickness": 4.0,
+    "mesh.edge_length": 8.0,
+    "mesh.n_layers": 4,
+    "mesh.n_cortex_layers": 2,
+    "growth.law": "area",
+    "growth.rate": 0.003,
+    "material.stiffness_ratio": 3.0,
+    "dissipation.number": 0.2,
+    "metrics.closing_radius": 12.0,
+    "solver.increments": 4,
+    "stability.detect": False,
+}

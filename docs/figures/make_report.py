@@ -1,11 +1,13 @@
-"""Draw ``report*.png``: the reports of a standard run and of a study, as Chromium shows them.
+"""Draw ``report*.png`` and ``space-report.png``: reports of runs and of a study, as Chromium shows them.
 
-``python docs/figures/make_report.py`` simulates what it needs in a temporary folder (about a minute).
+``python docs/figures/make_report.py`` simulates what it needs in a temporary folder (a few minutes); names of
+pictures after it draw these alone.
 """
 
 from __future__ import annotations
 
 import shutil
+import sys
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -21,6 +23,8 @@ from gyrify.study import Study, run_study
 HERE = Path(__file__).parent
 ARGUMENTS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-sync", "--no-first-run"]
 SIZE = {"width": 1360, "height": 900}
+# As high as the panel of a body in space with all that is below its scene.
+HEIGHTS = {"body.html": 1040}
 STUDY: dict[str, Any] = {
     "base": {
         "preset": "reference-slice",
@@ -34,6 +38,27 @@ STUDY: dict[str, Any] = {
             {"key": "material.stiffness_ratio", "values": [0.5, "1/1.36", 1.0, 2.0]},
         ],
     },
+}
+# The first brain of docs/space.md.
+BODY: dict[str, Any] = {
+    "geometry": {
+        "shape": "ellipsoid",
+        "semi_axes": [24.0, 20.0, 18.0],
+        "hole_fraction": 0.0,
+        "cortical_thickness": 3.0,
+    },
+    "mesh": {
+        "edge_length": 3.3,
+        "n_layers": 6,
+        "n_cortex_layers": 2,
+        "element": "mean_dilatation",
+        "node_jitter": 0.02,
+    },
+    "growth": {"law": "area", "profile": "sigmoid", "rate": 0.0036, "ratio": 1e4},
+    "material": {"stiffness_ratio": 3.0},
+    "dissipation": {"number": 0.2},
+    "solver": {"increments": 20},
+    "stability": {"detect": False},
 }
 # File, page, colour scheme, what to do before the picture is taken, whether to take the whole page.
 PICTURES = (
@@ -55,27 +80,45 @@ PICTURES = (
         "Array.from(document.querySelectorAll('.plain'))[0].click()",
         False,
     ),
+    (
+        "space-report.png",
+        "body",
+        "light",
+        "document.querySelector('input[value=region]').click();"
+        "document.querySelector('.cut-bar input[value=x]').click()",
+        False,
+    ),
 )
 
 
 def main() -> None:
     """Write every picture."""
     program = shutil.which("chromium") or shutil.which("google-chrome")
+    chosen = [picture for picture in PICTURES if picture[0] in (sys.argv[1:] or [picture[0]])]
     with tempfile.TemporaryDirectory() as name, sync_playwright() as playwright:
         folder = Path(name)
-        run = simulate(Config.preset("reference-slice"))
-        write_page(run_page(run, "reference-slice"), folder / "run.html")
-        run_study(Study.from_mapping(STUDY), folder / "study")
-        write_page(study_page(folder / "study", "growth and stiffness"), folder / "study.html")
+        for page in {picture[1] for picture in chosen}:
+            write_page(_page(page, folder), folder / f"{page}.html")
         browser = playwright.chromium.launch(executable_path=program, args=ARGUMENTS)
-        for file, page, scheme, action, is_whole in PICTURES:
+        for file, page, scheme, action, is_whole in chosen:
             _take(browser, folder / f"{page}.html", HERE / file, scheme, action, is_whole)
         browser.close()
 
 
+def _page(name: str, folder: Path) -> str:
+    """A page, and what it needs."""
+    if name == "study":
+        run_study(Study.from_mapping(STUDY), folder / "study")
+        return study_page(folder / "study", "growth and stiffness")
+    if name == "body":
+        return run_page(simulate(Config.from_dict(BODY)), "a small brain")
+    return run_page(simulate(Config.preset("reference-slice")), "reference-slice")
+
+
 def _take(browser: Browser, source: Path, target: Path, scheme: Any, action: str, is_whole: bool) -> None:
     # Without motion, so that the critical mode stands still at its largest.
-    page = browser.new_page(viewport=SIZE, color_scheme=scheme, reduced_motion="reduce")
+    size: Any = {**SIZE, "height": HEIGHTS.get(source.name, SIZE["height"])}
+    page = browser.new_page(viewport=size, color_scheme=scheme, reduced_motion="reduce")
     page.goto(source.as_uri())
     page.wait_for_timeout(1500)
     if action:

@@ -75,10 +75,10 @@ class Opened:
             "(gyrify.panel.viewer)"
         )
 
-    def on_screen(self, x: float, y: float) -> tuple[float, float]:
-        """Pixels (from the left and the top of the scene) of a point of the plane."""
+    def on_screen(self, *place: float) -> tuple[float, float]:
+        """Pixels (from the left and the top of the scene) of a point of the plane or of space."""
         self.settle()
-        px, py = self.run(f"gyrify.panel.viewer.camera.toScreen({float(x)!r}, {float(y)!r})")
+        px, py = self.run(f"gyrify.panel.viewer.camera.toScreen(...{[float(x) for x in place]})")
         return px, py
 
     def pixels(self) -> NDArray[np.int64]:
@@ -96,9 +96,9 @@ class Opened:
         """Go to a frame."""
         self.run(f"gyrify.panel.player.seek({frame})")
 
-    def hover(self, x: float, y: float) -> str:
-        """Text of the tooltip over a point of the plane; empty where there is none."""
-        px, py = self.on_screen(x, y)
+    def hover(self, *place: float) -> str:
+        """Text of the tooltip over a point of the plane or of space; empty where there is none."""
+        px, py = self.on_screen(*place)
         self.run("gyrify.panel.viewer.canvas.scrollIntoView({ block: 'center' })")
         box = self.page.locator("canvas").bounding_box()
         self.page.mouse.move(box["x"] + px, box["y"] + py)

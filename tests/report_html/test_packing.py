@@ -121,5 +121,5 @@ def test_scripts_and_styles_are_small(file: Path) -> None:
 
 
 def test_every_script_and_style_is_in_a_page() -> None:
-    named = {*page.STYLES, *page.RUN_SCRIPTS, *page.STUDY_SCRIPTS}
+    named = {*page.STYLES, *page.RUN_SCRIPTS, *page.SPACE_SCRIPTS, *page.STUDY_SCRIPTS}
     assert {file.name for file in SOURCES} == named

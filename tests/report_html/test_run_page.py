@@ -7,13 +7,12 @@ import re
 import matplotlib as mpl
 import numpy as np
 import pytest
+from reading import changed, check_value
 
 from gyrify.report.html import run_page
 from gyrify.report.html.shown_fields import SHOWN, scalar
 from gyrify.store import History
 from gyrify.store.fields import fields
-
-NUMBER = r"([−\d.]+(?: × 10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?)"
 
 
 @pytest.fixture(scope="module")
@@ -28,18 +27,6 @@ def opened(browser, text):
     assert found.errors == []
     assert len(found.requests) == 1, "only the file itself"
     assert found.requests[0].startswith("file://")
-
-
-def number(text: str) -> float:
-    """A number as the page writes it."""
-    stem, _, power = text.replace("−", "-").partition(" × 10")
-    digits = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
-    return float(stem) * 10.0 ** int(power.translate(digits) or 0)
-
-
-def changed(before: np.ndarray, after: np.ndarray) -> float:
-    """Part of the pixels that differ by more than a rounding."""
-    return float((np.abs(before - after).max(axis=2) > 8).mean())
 
 
 def test_the_picture_follows_growth_and_field(opened) -> None:
@@ -108,14 +95,6 @@ def test_hover_tells_the_stored_value_of_contour_nodes(opened, folded: History, 
             place = int(np.flatnonzero(contour == found)[0])
             assert np.linalg.norm(x[place] - x[node]) < 0.5
             check_value(tip, values[place], np.ptp(values))
-
-
-def check_value(tip: str, stored: float, spread: float) -> None:
-    """The first line is the stored value within what the last line says, and that is little."""
-    shown = number(re.match(NUMBER, tip).group(1))
-    error = number(re.search(f"shown to ± {NUMBER}", tip).group(1))
-    assert abs(shown - stored) <= 1.06 * error  # the error itself is written with two digits
-    assert error <= max(2e-5 * spread, 2e-5 * abs(stored))
 
 
 def test_off_the_tissue_there_is_no_value(opened) -> None:

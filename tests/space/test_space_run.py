@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import h5py
 import meshio
 import numpy as np
 import pytest
 from solids import BALL, BRAIN, PATCH, config
 
-from gyrify.errors import ConfigError
+from gyrify.errors import ConfigError, SolveError
 from gyrify.report.outputs import write_outputs
 from gyrify.run.simulation import resume, simulate
 from gyrify.store import History
@@ -133,8 +134,33 @@ def test_other_programs_open_what_is_exported(brain: History, tmp_path: Path) ->
     volume = np.einsum("ni,ni->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0
     inside = np.linalg.det(brain.points()[brain.mesh.cells][:, 1:] - brain.points()[brain.mesh.cells][:, :1])
     assert volume == pytest.approx(inside.sum() / 6.0, rel=1e-5)
-    with pytest.raises(ConfigError, match="body in space"):
+    with pytest.raises(ConfigError, match="has a surface, no contour"):
         export(brain, "contour", tmp_path / "x.csv")
+
+
+def test_ply_is_the_closed_surface_with_the_fields_of_its_points(brain: History, tmp_path: Path) -> None:
+    (file,) = export(brain, "ply", tmp_path / "brain.ply", names=["thickness", "contact_force", "J"])
+    head = file.read_bytes().split(b"end_header")[0].decode()
+    assert "format binary_little_endian" in head
+    assert "thickness [mm], contact_force [Pa mm^2]" in head
+    read, mesh = meshio.read(file), brain.mesh
+    triangles = read.cells[0].data
+    assert len(triangles) == len(mesh.faces)
+    edges = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
+    # closed and oriented: every edge is run through once in each direction
+    assert len(np.unique(edges, axis=0)) == len(edges)
+    assert {tuple(edge) for edge in edges} == {tuple(edge[::-1]) for edge in edges}
+    corners = read.points[triangles]
+    volume = np.einsum("ni,ni->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0
+    inside = np.linalg.det(brain.points()[mesh.cells][:, 1:] - brain.points()[mesh.cells][:, :1])
+    assert volume == pytest.approx(inside.sum() / 6.0, rel=1e-5)
+    stored = fields(brain, -1, ["thickness", "contact_force"])
+    assert read.points == pytest.approx(brain.points()[mesh.contour], rel=1e-6)
+    assert read.point_data["thickness"] == pytest.approx(stored["thickness"][mesh.contour], rel=1e-6)
+    force = np.stack([read.point_data[f"contact_force_{axis}"] for axis in "xyz"], axis=1)
+    exact = stored["contact_force"][mesh.contour]
+    assert force == pytest.approx(exact, rel=1e-6, abs=1e-6 * np.abs(exact).max())
+    assert set(read.point_data) == {"thickness", *(f"contact_force_{axis}" for axis in "xyz")}
 
 
 def test_vtk_reads_the_series(folder: Path, brain: History) -> None:
@@ -152,6 +178,8 @@ def test_vtk_reads_the_series(folder: Path, brain: History) -> None:
     moved = vtk_to_numpy(grid.GetPointData().GetArray("displacement"))
     assert moved == pytest.approx(brain.state_vector(-1), abs=1e-4)
     stress = vtk_to_numpy(grid.GetCellData().GetArray("cauchy_stress"))
+    with h5py.File(folder / "history.vtkhdf") as file:
+        assert file["VTKHDF/PointData/contact_force"].attrs["unit"] == "Pa mm²"
     exact = fields(brain, -1, ["cauchy_stress"])["cauchy_stress"]
     assert stress[:, 4] == pytest.approx(exact[:, 1, 2], abs=2e-4 * np.abs(exact).max())
 
@@ -187,20 +215,6 @@ def test_a_patch_and_a_hollow_ball_run_and_verify(tmp_path: Path) -> None:
         assert [check.sentence for check in found.checks if not check.passed] == [], name
 
 
-def test_what_is_not_built_says_so(folder: Path) -> None:
-    import gyrify
-    from gyrify.report.html import run_page
-
-    brain = History.load(folder)
-    for attempt in (
-        lambda: gyrify.plot(brain),
-        lambda: run_page(brain, "x"),
-        lambda: gyrify.animate(brain, folder / "x.gif"),
-    ):
-        with pytest.raises(ConfigError, match="in space"):
-            attempt()
-
-
 def test_notebook_shows_a_body_in_space(brain: History) -> None:
     assert "GI by area" in brain._repr_html_()
     grid = brain.to_pyvista()
@@ -208,3 +222,9 @@ def test_notebook_shows_a_body_in_space(brain: History) -> None:
     assert set(grid.celltypes) == {10}
     table = brain.to_dataframe()
     assert table["gi_area_hull"].iloc[-1] > table["gi_area_hull"].iloc[0]
+
+
+def test_a_failed_increment_tells_its_force_in_the_unit_of_space() -> None:
+    one_step = {"solver.max_newton": 1, "solver.increments": 1, "solver.min_increment": 1.0}
+    with pytest.raises(SolveError, match=r"residual \S+ Pa mm², wanted"):
+        simulate(config(BALL, **{"mesh.edge_length": 14.0, **one_step}))

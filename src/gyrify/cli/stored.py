@@ -48,7 +48,7 @@ def export(
     run_folder: RunFolder,
     /,
     *,
-    format: Literal["vtu", "xdmf", "csv", "stl", "contour", "metrics"] = "vtu",
+    format: Literal["vtu", "xdmf", "csv", "stl", "ply", "contour", "metrics"] = "vtu",
     out: Path | None = None,
     state: int = -1,
     every: bool = False,
@@ -62,9 +62,9 @@ def export(
 
     Parameters
     ----------
-    format : {"vtu", "xdmf", "csv", "stl", "contour", "metrics"}
-        Format of the files; contour is a CSV table of the outer contour, metrics one of the metrics, a row
-        per state.
+    format : {"vtu", "xdmf", "csv", "stl", "ply", "contour", "metrics"}
+        Format of the files; ply is the surface with the fields of its points, contour a CSV table of the
+        outer contour of a slice, metrics one of the metrics, a row per state.
     out : Path, optional
         File to write; by default export and the format's suffix (contour.csv, export-metrics.csv), in the
         run folder.
@@ -73,7 +73,7 @@ def export(
     every : bool
         Write every state that ``output.every`` asks for, as a time series.
     thickness : float
-        Thickness of the solid that STL makes of the slice [mm].
+        Thickness of the solid that STL and PLY make of a slice [mm].
     closing_radius : str, optional
         Radius of the closing to measure with [mm], with --format metrics; by default that of the run.
     gyrus_prominence : str, optional

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from gyrify.base.force_units import force_unit
 from gyrify.config import Config
 from gyrify.energy.contact import ContactEnergy, ContactSurface
 from gyrify.energy.contact_libraries import LibraryName
@@ -132,7 +133,7 @@ class Slice(Tissue):
         solver, E = self.config.solver, self.config.material.young_modulus
         size = self.mean_cortical_edge ** (self.mesh.n_dim - 1)
         criterion = Criterion(solver.tolerance * E * size, solver.max_newton)
-        return Stepping(solver.increments, solver.min_increment, criterion)
+        return Stepping(solver.increments, solver.min_increment, criterion, force_unit(self.mesh.n_dim))
 
     @property
     def is_conservative(self) -> bool:

@@ -10,9 +10,9 @@ from typing import Final, get_args
 import numpy as np
 
 from gyrify.base.arguments import Pathlike, as_path, real_number, whole_number
-from gyrify.config.plane_only import require_plane
 from gyrify.config.run_sections import OutputField
 from gyrify.errors import ConfigError
+from gyrify.report.animate_body import BodyScene
 from gyrify.report.animate_files import durations, video_encoder, watched, write_gif, write_mp4
 from gyrify.report.animate_scene import Pixels, Scene
 from gyrify.report.plot.field_colours import PAINTS
@@ -43,7 +43,8 @@ def animate(
 ) -> Path:
     """Write growth as a GIF or an MP4, by atomic rename.
 
-    Growth time runs evenly; each frame shows the stored state nearest to its time, the last one is held.
+    Growth time runs evenly; each frame shows the stored state nearest to its time, the last one is held. A
+    body in space is seen from the side, and cut across.
 
     Parameters
     ----------
@@ -86,16 +87,21 @@ def animate(
     width = whole_number("width", width)
     _check(target, field, fps=fps, seconds=seconds, width=width)
     (last,) = show([run])
-    require_plane(last.history.config, "An animation", "history.vtkhdf opens in ParaView, which animates it.")
     states, repeats = frames_of(last.history, max(round(fps * seconds), 2))
-    scene = Scene(states, 2 * round(width / 2), _field(field))
+    kind = BodyScene if last.in_space else Scene
+    scene = kind(states, 2 * round(width / 2), _field(field))
     with storage_faults(target.parent, f"The animation {target}"), whole_file(target) as partial:
         _write(partial, target.suffix, scene, watched(scene.pixels, len(states), observe), repeats, fps)
     return target
 
 
 def _write(
-    file: Path, suffix: str, scene: Scene, frames: Iterator[Pixels], repeats: list[int], fps: float
+    file: Path,
+    suffix: str,
+    scene: Scene | BodyScene,
+    frames: Iterator[Pixels],
+    repeats: list[int],
+    fps: float,
 ) -> None:
     """Write the frames; the last one is held."""
     if suffix.lower() == ".mp4":

@@ -41,7 +41,7 @@ from gyrify.store.fields import fields
 Pixels = NDArray[np.uint8]
 Colour = tuple[int, int, int]
 # Steps of a map of colours that a palette keeps.
-_STEPS: Final = 96
+STEPS: Final = 96
 _WIDTH_MM: Final = 90.0
 _TOP_MM: Final = 2.0
 _THIN: Final[dict[str, Any]] = {"color": COLOURS["line"], "linewidth": 0.4}
@@ -84,7 +84,7 @@ class Scene:
         title = [states[0].name, *([states[0].note] if states[0].note else [])]
         head = 2.8 + LINE_MM * (len(title) + 2)
         self.figure, self._axes = page(low, high, _WIDTH_MM, header_mm=head)
-        self.size = _fit(self.figure, width)
+        self.size = fit(self.figure, width)
         self._fill: Fill = (
             Tissues(self._axes, states[0].drawing) if field is None else Field(self.figure, states, field)
         )
@@ -94,14 +94,14 @@ class Scene:
         self._axes.add_line(line(clamped_line(states[0]), **_THIN))
         styles = (OUTLINE, _THIN, _THICK)
         self._lines = [self._axes.add_line(line(np.zeros((0, 2)), **style)) for style in styles]
-        self._texts = _header(self.figure, title)
+        self._texts = header(self.figure, title)
         self._background: Any = None
 
     @property
     def colours(self) -> list[Colour]:
         """Colours that carry meaning."""
         return [
-            *(_bytes(name) for name in ("white", COLOURS["line"], COLOURS["outline"])),
+            *(colour_bytes(name) for name in ("white", COLOURS["line"], COLOURS["outline"])),
             *self._fill.colours,
         ]
 
@@ -143,7 +143,7 @@ class Tissues:
             for loops, name in zip(self._loops, ("white", "grey"), strict=True)
         ]
         self.artists: list[Artist] = [axes.add_artist(patch) for patch in self._patches]
-        self.colours = [_bytes(COLOURS[name]) for name in ("white", "grey")]
+        self.colours = [colour_bytes(COLOURS[name]) for name in ("white", "grey")]
 
     def show(self, number: int, drawing: DrawnSlice) -> None:  # noqa: ARG002
         """Take the shape of a frame."""
@@ -163,7 +163,7 @@ class Field:
         self._drawn = draw_field(figure.axes[0], first.drawing, of_triangles, paint, scale)
         colour_bar(figure, (42.0, 9.5, 45.0, 2.2), self._drawn, paint.label, np.concatenate(self._values))
         self.artists: list[Artist] = [self._drawn]
-        self.colours = [_bytes(colour) for colour in self._drawn.cmap(np.linspace(0.0, 1.0, _STEPS))]
+        self.colours = [colour_bytes(colour) for colour in self._drawn.cmap(np.linspace(0.0, 1.0, STEPS))]
 
     def show(self, number: int, drawing: DrawnSlice) -> None:
         """Take the shape and the values of a frame."""
@@ -176,19 +176,20 @@ def frame_text(state: Shown, mark: str) -> tuple[str, str]:
     """What is written above a frame: growth time, index, gyri, and what is known of the mesh."""
     gyri, duration = state.measures.n_gyri, state.history.config.growth.duration
     count = f"{gyri} {'gyrus' if gyri == 1 else 'gyri'}"
-    radius = state.measures.closing_radius
+    measures, kind = state.measures, "by area " if state.in_space else ""
     return (
         f"growth time {state.growth_time:.4g} of {duration:g}",
-        f"GI {state.measures.gi_closing:.2f} (closing, {radius:g} mm)   {count}   {mark}",
+        f"GI {kind}{measures.index:.2f} (closing, {measures.closing_radius:.4g} mm)   {count}   {mark}",
     )
 
 
-def _bytes(colour: Any) -> Colour:
+def colour_bytes(colour: Any) -> Colour:
+    """A colour as three whole numbers from 0 to 255."""
     red, green, blue = (round(255 * part) for part in to_rgb(colour))
     return red, green, blue
 
 
-def _header(figure: Figure, title: Sequence[str]) -> list[Text]:
+def header(figure: Figure, title: Sequence[str]) -> list[Text]:
     """Write the title, and return the lines below it, which change."""
     width_mm, height_mm = figure.get_size_inches() / MM
     texts = []
@@ -201,7 +202,7 @@ def _header(figure: Figure, title: Sequence[str]) -> list[Text]:
     return texts[len(title) :]
 
 
-def _fit(figure: Figure, width: int) -> tuple[int, int]:
+def fit(figure: Figure, width: int) -> tuple[int, int]:
     """Set the resolution for a width, and the height to an even number of pixels; return both."""
     wide, tall = figure.get_size_inches()
     figure.set_dpi(width / wide)

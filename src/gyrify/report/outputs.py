@@ -122,7 +122,7 @@ def folded_picture(history: History, summary: dict[str, Any]) -> Figure:
 
 def _folded_body(history: History, summary: dict[str, Any], title: str, told: str) -> Figure:
     """Picture of a body in space: three views and a section."""
-    from gyrify.report.space_figure import space_figure
+    from gyrify.report.plot.space_figure import space_figure
 
     surface = surface_of(history.mesh, history.points(), history.config.metrics)
     gi, n_gyri = summary["gi"], summary["n_gyri"]
@@ -137,6 +137,11 @@ def _folded_body(history: History, summary: dict[str, Any], title: str, told: st
 def onset_picture(history: History, onset: Onset) -> Figure:
     """Picture of the mode along which the run first lost stability."""
     mesh, n = history.mesh, history.mesh.n_points
+    if mesh.n_dim == 3:
+        from gyrify.report.plot.mode import mode_plot
+        from gyrify.report.plot.shown import show
+
+        return mode_plot(show([history]), None)
     return mode_figure(
         mesh.points + onset.displacement[:n],
         onset.vector[:n],

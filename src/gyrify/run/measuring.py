@@ -13,8 +13,9 @@ from gyrify.base.arguments import real_number
 from gyrify.config import Config
 from gyrify.config.run_sections import Metrics
 from gyrify.metrics import Measures
-from gyrify.run.body_measures import measured
+from gyrify.run.body_measures import measured, surface_of
 from gyrify.run.validity.lengths import check_lengths
+from gyrify.solve.types import FloatArray
 from gyrify.store.files import whole_file
 from gyrify.store.history import History
 from gyrify.store.state_numbers import state_number
@@ -76,8 +77,23 @@ def _measured(history: History, index: int, chosen: Metrics, *, earlier: bool = 
     key = ("measures", number, *lengths, chosen.samples, earlier)
     if key not in history.known_measures:
         x, mesh = history.points(number), history.mesh
-        history.known_measures[key] = measured(mesh, x, chosen, earlier=earlier)
+        if mesh.n_dim == 3:
+            surface = surface_of(mesh, x, chosen)
+            history.known_measures[key] = Measures.of(surface)
+            history.known_measures["depth", number, *lengths] = surface.depth
+        else:
+            history.known_measures[key] = measured(mesh, x, chosen, earlier=earlier)
     found: Measures = history.known_measures[key]
+    return found
+
+
+def surface_depth(history: History, index: int = -1) -> FloatArray:
+    """(n_contour,) depth of the points of the outer surface below its closing, of a body in space [mm]."""
+    number, chosen = state_number(index, len(history)), history.config.metrics
+    _measured(history, number, chosen)
+    found: FloatArray = history.known_measures[
+        "depth", number, chosen.closing_radius, chosen.gyrus_prominence
+    ]
     return found
 
 

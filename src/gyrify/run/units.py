@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from gyrify.base.force_units import energy_unit, force_unit
 from gyrify.config import Config
 from gyrify.config.faults import sections
 from gyrify.config.words import extra
 from gyrify.metrics.quantities import by_key
+
+__all__ = ["energy_unit", "force_unit", "unit_of"]
 
 
 def unit_of(name: str, n_dim: int = 2) -> str:
@@ -25,13 +28,3 @@ def unit_of(name: str, n_dim: int = 2) -> str:
     quantity = by_key().get(name)
     unit = quantity.unit if quantity is not None else ""
     return force_unit(n_dim) if unit == force_unit(2) else unit
-
-
-def force_unit(n_dim: int) -> str:
-    """Unit of a nodal force: per thickness in the plane (2), a stress times an area in space (3)."""
-    return "Pa mm" if n_dim == 2 else "Pa mm²"
-
-
-def energy_unit(n_dim: int) -> str:
-    """Unit of an energy, likewise."""
-    return "Pa mm²" if n_dim == 2 else "Pa mm³"

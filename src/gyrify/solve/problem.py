@@ -124,11 +124,14 @@ class Stepping:
         Smallest increment, as a fraction of the duration.
     criterion : Criterion
         When an increment has converged.
+    force_unit : str
+        Unit of nodal forces, for people.
     """
 
     increments: int
     min_increment: float
     criterion: Criterion
+    force_unit: str = "Pa mm"
 
     @property
     def end(self) -> int:

@@ -105,7 +105,8 @@ def _advance(increments: Increments, state: State) -> State:
             failure = InvertedCellError if solution.result.is_inversion else SolveError
             raise failure(
                 f"Growth stopped at {time:.4%} of the duration: {solution.result.message} "
-                f"(residual {solution.residual:.3g} Pa mm, wanted {stepping.criterion.force:.3g}).",
+                f"(residual {solution.residual:.3g} {stepping.force_unit}, "
+                f"wanted {stepping.criterion.force:.3g}).",
                 solution.result.advice,
             )
         span //= 2

@@ -1,4 +1,4 @@
-"""A run in the formats of other programs: VTU, XDMF, CSV, STL, and its contour as a table."""
+"""A run in the formats of other programs: VTU, XDMF, CSV, STL, PLY, and its contour as a table."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ import numpy as np
 
 from gyrify.base.arguments import Pathlike, as_path, real_number
 from gyrify.base.extras import require
-from gyrify.config.plane_only import require_plane
 from gyrify.config.run_sections import OutputField
 from gyrify.errors import ConfigError, HistoryError
 from gyrify.store.contour_table import write_contour
@@ -21,18 +20,20 @@ from gyrify.store.external import cell_type, numbered, padded, point_and_cell_da
 from gyrify.store.fields import known_fields
 from gyrify.store.files import fresh
 from gyrify.store.history import History
+from gyrify.store.ply import write_ply
 from gyrify.store.state_numbers import Index, state_numbers
 from gyrify.store.stl import THICKNESS, write_stl
 from gyrify.store.vtkhdf import written_states
 from gyrify.store.xdmf import write_xdmf
 
-Format = Literal["vtu", "xdmf", "csv", "stl", "contour"]
+Format = Literal["vtu", "xdmf", "csv", "stl", "ply", "contour"]
 
 NAMES: Final[dict[Format, str]] = {
     "vtu": "export.vtu",
     "xdmf": "export.xdmf",
     "csv": "export.csv",
     "stl": "export.stl",
+    "ply": "export.ply",
     "contour": "contour.csv",
 }
 
@@ -52,21 +53,22 @@ def export(
     ----------
     history : History
         The run.
-    format : {"vtu", "xdmf", "csv", "stl", "contour"}
+    format : {"vtu", "xdmf", "csv", "stl", "ply", "contour"}
         ``vtu`` and ``xdmf``: reference mesh with the fields, ``displacement`` among them; several states make
         a time series (XDMF: one file and its HDF5 data; VTU: a file each and a ``.pvd`` that lists them).
         ``csv``: a row per point with its displacement and its place on the contour. ``stl``: the deformed
-        slice as a closed solid, a file per state. ``contour``: a CSV file with a row per point of the
-        contour, its place, shape, thickness, depth, stresses and contact force, with the units in the header.
+        slice as a closed solid, or the closed surface of a body in space, a file per state. ``ply``: the same
+        with the fields of its points. ``contour``: a CSV file with a row per point of the contour of a slice,
+        its place, shape, thickness, depth, stresses and contact force, with the units in the header.
     path : path
         File to write.
     index : int, slice, sequence of int or None
         State, negative indices count from the end, or several; None for every state that ``output.every``
         asks for.
     names : sequence of str, optional
-        Fields; those of ``output.fields`` by default. Only VTU and XDMF have use for them.
+        Fields; those of ``output.fields`` by default. Only VTU, XDMF and PLY have use for them.
     thickness : float
-        Thickness of the solid along z [mm], > 0; STL only.
+        Thickness along z of the solid that STL and PLY make of a slice [mm], > 0.
 
     Returns
     -------
@@ -93,8 +95,14 @@ def export(
         if format == "csv":
             return _write_csv(history, target, states)
         if format == "contour":
-            require_plane(history.config, "The contour as a table", "Export it as vtu or stl.")
+            if history.mesh.n_dim == 3:
+                raise ConfigError(
+                    "A body in space has a surface, no contour to write as a table.",
+                    "Use ply, the surface with its thickness, curvature and contact force, or csv.",
+                )
             return write_contour(history, target, states)
+        if format == "ply":
+            return write_ply(history, target, states, chosen, tall)
         if format == "stl":
             return write_stl(history, target, states, tall)
         return (write_xdmf if format == "xdmf" else _write_vtu)(history, target, states, chosen)

@@ -19,6 +19,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from gyrify.base.arguments import as_words
+from gyrify.base.force_units import force_unit
 from gyrify.config.faults import nearest
 from gyrify.config.run_sections import ALL_FIELDS, OutputField
 from gyrify.errors import ConfigError
@@ -49,6 +50,11 @@ UNITS: Final[dict[OutputField, str]] = {
     "curvature": "1/mm",
     "contact_force": "Pa mm",
 }
+
+
+def field_unit(name: OutputField, n_dim: int) -> str:
+    """Unit of a field of a body in the plane (2), where forces are per thickness, or in space (3)."""
+    return force_unit(n_dim) if name == "contact_force" else UNITS[name]
 
 
 def fields(

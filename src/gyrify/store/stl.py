@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from gyrify.errors import ConfigError
 from gyrify.mesh import Mesh
+from gyrify.mesh.boundary import boundary_faces
 from gyrify.solve.types import FloatArray
 from gyrify.store.external import numbered
 from gyrify.store.files import fresh
@@ -25,8 +27,8 @@ def write_stl(history: History, path: Path, states: list[int], thickness: float)
     """Write a file per state, binary and in single precision, as the format has it."""
     files = numbered(path, states)
     for file, number in zip(files, states, strict=True):
-        mesh, points = history.mesh, history.points(number)
-        corners = solid(mesh, points, thickness) if mesh.n_dim == 2 else boundary(mesh, points)
+        printed = solid(history.mesh, history.points(number), thickness)
+        corners = printed.points[printed.triangles]
         records = np.zeros(len(corners), dtype=_RECORD)
         records["corners"] = corners
         records["normal"] = _normals(corners)
@@ -35,53 +37,63 @@ def write_stl(history: History, path: Path, states: list[int], thickness: float)
     return files
 
 
-def boundary(mesh: Mesh, points: FloatArray) -> FloatArray:
-    """(n_triangles, 3, 3) corners of the boundary of a body in space, as seen from outside [mm].
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """A closed surface.
 
-    Raises
-    ------
-    ConfigError
-        If the body is periodic: its sides are no boundary.
+    Attributes
+    ----------
+    points : (n, 3) float array
+        Positions [mm].
+    triangles : (n_triangles, 3) int array
+        Their corners, counter-clockwise as seen from outside.
+    source : (n,) int array
+        The point of the mesh that each is.
     """
-    if mesh.period is not None:
-        raise ConfigError("A patch has no closed surface to print.", "Export it as vtu.")
-    # faces that one cell has alone, each opposite a corner
-    opposite = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
-    faces = mesh.cells[:, opposite].reshape(-1, 3)
-    _, first, counts = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
-    return np.asarray(points[faces[np.sort(first[counts == 1])]])
+
+    points: FloatArray
+    triangles: NDArray[np.int64]
+    source: NDArray[np.int64]
 
 
-def solid(mesh: Mesh, points: FloatArray, thickness: float) -> FloatArray:
-    """Closed surface of a slice that is given a thickness.
+def solid(mesh: Mesh, points: FloatArray, thickness: float) -> Solid:
+    """Closed surface of a body in space, or of a slice that is given a thickness.
 
     Parameters
     ----------
     mesh : Mesh
         The mesh.
-    points : (n_points, 2) float array
+    points : (n_points, n_dim) float array
         Positions of its points [mm].
     thickness : float
-        Thickness t [mm]: the solid lies between z = 0 and z = t.
+        Thickness t of a slice [mm]: the solid lies between z = 0 and z = t. A strip is one period long, its
+        sides closed.
 
-    Returns
-    -------
-    (n_triangles, 3, 3) float array
-        Corners [mm], counter-clockwise as seen from outside. A strip is one period long, its sides closed.
+    Raises
+    ------
+    ConfigError
+        If the body is a patch: its sides are no boundary.
     """
+    return _body(mesh, points) if mesh.n_dim == 3 else _slab(mesh, points, thickness)
+
+
+def _body(mesh: Mesh, points: FloatArray) -> Solid:
+    if mesh.period is not None:
+        raise ConfigError("A patch has no closed surface to print.", "Export it as vtu.")
+    faces, _ = boundary_faces(mesh)
+    source, places = np.unique(faces, return_inverse=True)
+    return Solid(points[source], places.reshape(faces.shape), source)
+
+
+def _slab(mesh: Mesh, points: FloatArray, thickness: float) -> Solid:
     flat, triangles = _unrolled(mesh, points)
-    edges = _boundary(triangles)
-    low, high = (np.column_stack([flat, np.full(len(flat), z)]) for z in (0.0, thickness))
-    start, end = edges.T
-    return np.concatenate(
-        [
-            high[triangles],
-            low[triangles[:, ::-1]],
-            # The tissue lies on the left of a boundary edge, so that these look to its right, outwards.
-            np.stack([low[start], low[end], high[end]], axis=1),
-            np.stack([low[start], high[end], high[start]], axis=1),
-        ]
-    )
+    start, end = _boundary(triangles).T
+    n = len(flat)
+    upper, source = triangles + n, np.arange(2 * n) % mesh.n_points
+    both = [np.column_stack([flat, np.full(n, z)]) for z in (0.0, thickness)]
+    # The tissue lies on the left of a boundary edge, so that the sides look to its right, outwards.
+    sides = [np.stack([start, end, end + n], axis=1), np.stack([start, end + n, start + n], axis=1)]
+    return Solid(np.concatenate(both), np.concatenate([upper, triangles[:, ::-1], *sides]), source)
 
 
 def _unrolled(mesh: Mesh, points: FloatArray) -> tuple[FloatArray, NDArray[np.int64]]:

@@ -31,7 +31,7 @@ from gyrify.solve.types import FloatArray
 from gyrify.store.derived import sha256_of
 from gyrify.store.disk_faults import storage_faults
 from gyrify.store.external import cell_type, padded
-from gyrify.store.fields import CONTOUR_FIELDS, STATIC_FIELDS, UNITS, FieldMaker
+from gyrify.store.fields import CONTOUR_FIELDS, STATIC_FIELDS, FieldMaker, field_unit
 from gyrify.store.files import whole_file
 from gyrify.store.history import History
 from gyrify.store.state_fields import POINT_FIELDS, StateFields
@@ -192,7 +192,7 @@ def _write_fields(
             layout, part = _layout(name, mesh.n_dim), _written_part(mesh, name)
             targets[name] = _Target.create(data, name, layout, starts, n_values, part)
         root[f"Steps/{place}DataOffsets/{name}"] = starts
-        data[name].attrs["unit"] = UNITS[name]
+        data[name].attrs["unit"] = field_unit(name, history.mesh.n_dim)
     for step, state in enumerate(_states(history, steps)):
         for name, target in targets.items():
             target.write(step, _components(state, name))

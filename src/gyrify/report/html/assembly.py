@@ -18,17 +18,15 @@ from gyrify.store.disk_faults import storage_faults
 from gyrify.store.files import whole_file
 
 STYLES: Final = ("base.css", "viewer.css", "sections.css", "study.css")
-_VIEWER: Final = (
+_SHARED: Final = (
     "dom.js",
     "numbers.js",
     "payload.js",
-    "model.js",
+    "values.js",
     "colour.js",
-    "webgl.js",
-    "lines.js",
-    "camera.js",
-    "pick.js",
-    "viewer.js",
+    "glass.js",
+    "camera-moves.js",
+    "stage.js",
     "overlays.js",
     "pointer.js",
     "player.js",
@@ -37,9 +35,23 @@ _VIEWER: Final = (
     "panel.js",
     "theme.js",
 )
-RUN_SCRIPTS: Final = (*_VIEWER, "tables.js", "run.js")
+# Both have the functions by which the rest knows a scene: loadModel, createCamera, createPainter,
+# createViewer, probe.
+_PLANE: Final = ("model.js", "webgl.js", "lines.js", "camera.js", "pick.js", "viewer.js")
+_SPACE: Final = (
+    "space-model.js",
+    "space-webgl.js",
+    "space-camera.js",
+    "space-cut.js",
+    "space-pick.js",
+    "space-controls.js",
+    "space-viewer.js",
+)
+RUN_SCRIPTS: Final = (*_SHARED, *_PLANE, "tables.js", "run.js")
+SPACE_SCRIPTS: Final = (*_SHARED, *_SPACE, "tables.js", "run.js")
 STUDY_SCRIPTS: Final = (
-    *_VIEWER,
+    *_SHARED,
+    *_PLANE,
     "tables.js",
     "study-outline.js",
     "study-table.js",

@@ -9,6 +9,7 @@ from gyrify.config import Config
 from gyrify.config.rows import plain, rows
 from gyrify.config.words import decimals
 from gyrify.metrics.quantities import flat, shown_in
+from gyrify.run.units import force_unit
 from gyrify.store.history import History
 
 
@@ -41,10 +42,10 @@ def about(history: History, name: str, summary: dict[str, Any]) -> dict[str, Any
         "warnings": summary["warnings"],
         "mesh": {key: summary["converged"][key] for key in ("converged", "sentence", "command")},
         "note": summary["stability_note"],
-        "numbers": numbers(summary),
+        "numbers": numbers(summary, history.mesh.n_dim),
         "onset": summary["onset"],
         "settings": settings(config),
-        "solver": solver(summary),
+        "solver": solver(summary, history.mesh.n_dim),
         "versions": [[key, str(value)] for key, value in summary["versions"].items()],
         "hashes": [["configuration", summary["config_hash"]], ["result", summary["result_hash"]]],
         "toml": config.to_toml(),
@@ -64,15 +65,16 @@ def subtitle(config: Config) -> str:
     )
 
 
-def numbers(summary: dict[str, Any]) -> list[list[Any]]:
+def numbers(summary: dict[str, Any], n_dim: int = 2) -> list[list[Any]]:
     """Label, value, unit, decimals (None: as needed) and explanation of what the run came to."""
     values, mesh = flat(summary), summary["converged"]["sentence"]
+    lead = "gi_closing" if n_dim == 2 else "gi_area_closing"
     more = {
-        "gi_closing": f"with radius {values['gi_closing_radius_mm']:g} mm. {mesh}",
+        lead: f"with radius {values['gi_closing_radius_mm']:.4g} mm. {mesh}",
         "onset_growth_time": summary["stability_note"],
     }
     found = []
-    for quantity in shown_in("run"):
+    for quantity in shown_in("run", n_dim):
         if (value := values.get(quantity.key)) is None and quantity.key not in values:
             continue
         unit = "" if quantity.unit in ("1", "growth time") else quantity.unit
@@ -104,21 +106,22 @@ def settings(config: Config) -> list[dict[str, Any]]:
     ]
 
 
-def solver(summary: dict[str, Any]) -> list[list[Any]]:
+def solver(summary: dict[str, Any], n_dim: int = 2) -> list[list[Any]]:
     """Label, value and unit of what the solution cost, and how good it is."""
-    work = summary["solver"]
+    work, force, is_plane = summary["solver"], force_unit(n_dim).replace(" ", "·"), n_dim == 2
+    nodes = "contour nodes per fold" if is_plane else "surface nodes per wavelength"
     return [
         ["increments", work["increments"], ""],
         ["Newton iterations", work["newton_iterations"], ""],
         ["factorisations", work["factorizations"], ""],
         ["symbolic analyses", work["analyses"], ""],
         ["rejected increments", work["rejected"], ""],
-        ["largest nodal force at the end", work["residual"], "Pa·mm"],
-        ["tolerance of it", work["tolerance"], "Pa·mm"],
+        ["largest nodal force at the end", work["residual"], force],
+        ["tolerance of it", work["tolerance"], force],
         ["smallest J", summary["min_J"], ""],
         ["smallest elastic J", summary["min_J_elastic"], ""],
-        ["smallest gap of the contour", summary["min_gap_mm"], "mm"],
-        ["contour nodes per fold", summary["nodes_per_wavelength"], ""],
+        [f"smallest gap of the {'contour' if is_plane else 'surface'}", summary["min_gap_mm"], "mm"],
+        [nodes, summary["nodes_per_wavelength"], ""],
         ["linear solver", work["linear_solver"], ""],
         ["contact by", work.get("contact_library", "unknown"), ""],
         ["time spent", work["wall_s"], "s"],

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final, Literal
 
 import numpy as np
 
 from gyrify.config.run_sections import OutputField
 from gyrify.solve.types import FloatArray
-from gyrify.store.fields import UNITS
+from gyrify.store.fields import field_unit
 
 # Share of the values beyond either end of the colours, so that cells and points in cusps do not wash out the
 # others; `gyrify plot` has the same.
@@ -26,11 +26,11 @@ class ShownField:
     Attributes
     ----------
     name : str
-        As in `gyrify.store.fields`.
+        As in `gyrify.store.fields`, or ``depth`` in space.
     label : str
         For people.
     place : {"cell", "contour"}
-        Whether it has a value per cell or per point of the contour.
+        Whether it has a value per cell or per point of the contour, in space of the outer surface.
     colours : {"sequential", "diverging"}
         Diverging colours are for signed fields, with zero in the middle.
     about : str
@@ -38,19 +38,23 @@ class ShownField:
     outer : float
         Share of the values beyond either end of its colours. Curvature is far larger in the few points at the
         bottom of sulci than anywhere else, and would have no colour on crowns.
+    n_dim : int
+        Of what body it is, in the plane (2) or in space (3).
     """
 
-    name: OutputField
+    name: OutputField | Literal["depth"]
     label: str
     place: Literal["cell", "contour"]
     colours: Literal["sequential", "diverging"]
     about: str
     outer: float = _OUTER
+    n_dim: int = 2
 
     @property
     def unit(self) -> str:
         """Unit; empty for a pure number."""
-        return UNITS[self.name].replace("-", "").replace("1/mm", "mm⁻¹").replace("Pa mm", "Pa·mm")
+        unit = "mm" if self.name == "depth" else field_unit(self.name, self.n_dim)
+        return unit.replace("-", "").replace("1/mm", "mm⁻¹").replace("Pa mm", "Pa·mm")
 
 
 SHOWN: Final = (
@@ -94,9 +98,44 @@ SHOWN: Final = (
 )
 
 
-def chosen(names: Sequence[OutputField]) -> tuple[ShownField, ...]:
+# What is called or explained otherwise in space: label and explanation.
+_IN_SPACE: Final[dict[str, tuple[str, str]]] = {
+    "circumferential_stress": (
+        "stress along the layers",
+        "Mean normal Cauchy stress along the layers as they lie now; negative is compression.",
+    ),
+    "thickness": (
+        "cortical thickness",
+        "Shortest distance from the outer surface to the grey-white interface.",
+    ),
+    "curvature": (
+        "mean curvature",
+        "Of the outer surface: positive where it bulges outwards, negative in sulci.",
+    ),
+}
+
+
+def _in_space(field: ShownField) -> ShownField:
+    label, about = _IN_SPACE.get(field.name, (field.label, field.about))
+    return replace(field, label=label, about=about, n_dim=3)
+
+
+SHOWN_IN_SPACE: Final = (
+    *map(_in_space, SHOWN),
+    ShownField(
+        "depth",
+        "sulcal depth",
+        "contour",
+        "sequential",
+        "Distance below the outline of the closing by a ball.",
+        n_dim=3,
+    ),
+)
+
+
+def chosen(names: Sequence[str], n_dim: int = 2) -> tuple[ShownField, ...]:
     """The shown fields of these names, in their order on the page."""
-    return tuple(field for field in SHOWN if field.name in names)
+    return tuple(field for field in (SHOWN if n_dim == 2 else SHOWN_IN_SPACE) if field.name in names)
 
 
 def scalar(values: FloatArray) -> FloatArray:

@@ -51,13 +51,16 @@ def described_run(folder: Path, row: Row, budget: int) -> tuple[dict[str, Any], 
         point = final_state(folder, row["key"])
         about |= {"subtitle": subtitle(point.config), "toml": point.config.to_toml()}
         about["duration"] = point.config.growth.duration
-        about["outline"] = outline(point.mesh, point.points)
+        in_space = point.mesh.n_dim == 3
+        about["outline"] = None if in_space else outline(point.mesh, point.points)
     except HistoryError as fault:
         return {"subtitle": "", "toml": "", "outline": None, **about, "missing": str(fault)}, ""
     if found := point.summary.get("converged"):
         about["mesh"] = {key: found[key] for key in ("converged", "sentence", "command")}
     about |= {"onset": point.summary["onset"], "plots": _plots(point), "command": _command(point)}
-    if budget <= 0:
+    if in_space:
+        about["missing"] = "A body in space is shown by its own report."
+    if in_space or budget <= 0:
         return about, ""
     frames, plans = _frames(point)
     about["frames"], payload = packed_frames(point.mesh, frames, _mode(point), plans, budget)
@@ -101,6 +104,8 @@ def last_frame(point: StoredPoint) -> Frames:
     state = FieldMaker(problem).state(u, time / point.config.growth.duration, u)
     values = {}
     for field in chosen(_OF_ONE_STATE):
+        if field.name == "depth":
+            continue
         found = scalar(state[field.name])
         values[field] = (found if field.place == "cell" else found[mesh.contour])[None]
     return Frames([len(final.growth_time) - 1], final.growth_time[-1:], point.points[None], values)

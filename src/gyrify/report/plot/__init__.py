@@ -11,7 +11,6 @@ from typing import Final, Literal, get_args
 from matplotlib.figure import Figure
 
 from gyrify.base.arguments import as_path, real_number
-from gyrify.config.plane_only import require_plane
 from gyrify.errors import ConfigError
 from gyrify.report.plot.dispersion import dispersion_plot
 from gyrify.report.plot.energy import energy_plot
@@ -47,9 +46,6 @@ _NOTEBOOK_DPI: Final = 110
 _NARROWEST, _WIDEST = 60.0, 300.0
 
 
-_PICTURE = "folded.png in the run folder shows it; history.vtkhdf opens in ParaView."
-
-
 def plot(
     run: Run,
     what: Kind = "folded",
@@ -72,6 +68,7 @@ def plot(
         of the cortex, as colour and along the contour [mm]. ``energy``: work of growth, stored, dissipated,
         in contact and lost in jumps [mJ/mm]. ``mode``: the mode along which stability was lost.
         ``dispersion``: exact growth at onset against mode number, with the onset of the run.
+        Bodies in space are shown from three sides and cut across, their surface coloured.
     compare : History, path, or sequence of them, optional
         Further runs to show beside it, at the same scale and in the same colours: any number in a grid of
         slices, at most seven where curves share their axes (``gi``, ``energy``, ``dispersion``).
@@ -91,7 +88,8 @@ def plot(
     Raises
     ------
     ConfigError
-        If there is no such picture, growth time or stress; if a run has no onset, or is a strip.
+        If there is no such picture, growth time or stress; if a run has no onset, or no
+        dispersion: strips and bodies in space have none.
     HistoryError
         If there is no run in a folder.
 
@@ -106,8 +104,11 @@ def plot(
     if not isinstance(run, History) and is_study(as_path("run", run)):
         return _seen(study_plot(as_path("run", run), what, len(others), at, width_mm))
     states = show([run, *others], at)
-    for state in states:
-        require_plane(state.history.config, "A picture like this", _PICTURE)
+    if len({state.in_space for state in states}) > 1:
+        raise ConfigError(
+            "compare has bodies in the plane and in space: one picture shows the ones or the others.",
+            "Compare runs of one kind.",
+        )
     if what == "stress":
         return _seen(stress_plot(states, width_mm, stress))
     return _seen(_MAKERS[what](states, width_mm))

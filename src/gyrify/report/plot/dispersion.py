@@ -63,8 +63,13 @@ def annulus_of(config: Config) -> Annulus:
     Raises
     ------
     ConfigError
-        If it is a strip.
+        If it is a strip, or a body in space.
     """
+    if config.geometry.n_dim == 3:
+        raise ConfigError(
+            "A body in space has no circumferential modes: dispersion is that of the exact circular slice.",
+            "Choose another picture with --what; `expected` in summary.json has the exact onset of spheres.",
+        )
     if config.geometry.shape == "strip":
         raise ConfigError(
             "A strip has no circumferential modes: dispersion is that of the exact circular slice.",

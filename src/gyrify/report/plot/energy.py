@@ -17,19 +17,20 @@ from gyrify.report.plot.shown import Shown
 from gyrify.report.plot.style import DASHES, HUES, SINGLE, TIME_LABEL, add_legend, literal
 from gyrify.run.reevaluation import reevaluated
 
-# 1 Pa mm² per mm of depth is 1e-6 mJ.
+# 1 Pa mm² per mm of depth is 1e-6 mJ; in space 1 Pa mm³ is.
 _MILLIJOULES: Final = 1e-6
 _HEIGHTS: Final = (40.0, 32.0)
-_SHARES: Final = ("stored [mJ/mm]", "dissipated [mJ/mm]", "contact [µJ/mm]", "lost [µJ/mm]")
-_SURROUNDINGS: Final = "surroundings [mJ/mm]"
-_LABELS: Final = ("energy [mJ/mm]", "energy [µJ/mm]")
+# Labels, to which "/mm" is added in the plane.
+_SHARES: Final = ("stored [mJ", "dissipated [mJ", "contact [µJ", "lost [µJ")
+_SURROUNDINGS: Final = "surroundings [mJ"
+_LABELS: Final = ("energy [mJ", "energy [µJ")
 # Contact and jumps take so little that they are given in microjoules.
 _MICRO: Final = 1e3
 
 
 @dataclass(frozen=True, eq=False)
 class Budget:
-    """Energy per depth [mJ/mm] from the start of growth to each state, (n_states,) each.
+    """Energy from the start of growth to each state, (n_states,) each: per depth [mJ/mm], in space [mJ].
 
     ``work`` of growth = ``stored`` in elasticity + ``contact`` + ``external`` in the surroundings +
     ``dissipated`` + ``lost`` in jumps; see `gyrify.run.reevaluation`.
@@ -61,14 +62,19 @@ def energy_plot(states: Sequence[Shown], width_mm: float | None) -> Figure:
     """Energy of one run, small shares below at their own scale; or a panel per share for several runs."""
     width = width_mm or SINGLE
     end = max(state.history.config.growth.duration for state in states)
+    per = "" if states[0].in_space else "/mm"
     if len(states) > 1:
         budgets = [Budget.of(state) for state in states]
-        labels = _SHARES + ((_SURROUNDINGS,) if any(b.external.any() for b in budgets) else ())
+        labels = [each + per + "]" for each in _SHARES]
+        if any(b.external.any() for b in budgets):
+            labels.append(f"{_SURROUNDINGS}{per}]")
         title = title_of(states, "Energy against growth")
         figure, panels = curves(title, TIME_LABEL, labels, width, len(labels) * (28.0,))
         _several(panels, states, budgets)
     else:
-        figure, panels = curves(title_of(states, ""), TIME_LABEL, _LABELS, width, _HEIGHTS)
+        figure, panels = curves(
+            title_of(states, ""), TIME_LABEL, [each + per + "]" for each in _LABELS], width, _HEIGHTS
+        )
         _one(panels, states[0])
     panels[0].set_xlim(0.0, end)
     return figure

@@ -8,6 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
@@ -88,7 +89,7 @@ def draw_field(
 def colour_bar(
     figure: Figure,
     box_mm: tuple[float, float, float, float],
-    shown: PolyCollection,
+    shown: ScalarMappable,
     label: str,
     values: FloatArray,
 ) -> Axes:

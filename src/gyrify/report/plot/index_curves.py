@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from gyrify.metrics import Measures
 from gyrify.report.drawn_slice import FloatArray
 from gyrify.report.plot.curves import curves, mark_onset, title_of
 from gyrify.report.plot.shown import Shown
@@ -25,12 +26,16 @@ _LABELS: Final = ("gyrification index [–]", "sulcal depth [mm]", "gyri [count]
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """Metrics of every state, (n_states,) each; NaN where an index is infinite."""
+    """Metrics of every state, (n_states,) each; NaN where an index is infinite or not defined.
+
+    In the plane the indices are those of lengths, the other one by the exposed outline; in space those of
+    areas, the other one the mean over sections.
+    """
 
     time: FloatArray
     hull: FloatArray
     closing: FloatArray
-    exposed: FloatArray
+    other: FloatArray
     depth_max: FloatArray
     depth_mean: FloatArray
     n_gyri: FloatArray
@@ -40,12 +45,18 @@ class Series:
         """Measure every state of a run up to the shown one."""
         history = state.history
         rows = [
-            (m.gi_hull, m.gi_closing, m.gi_exposed, m.sulcal_depth_max, m.sulcal_depth_mean, m.n_gyri)
+            (*_indices(m), m.sulcal_depth_max, m.sulcal_depth_mean, m.n_gyri)
             for m in (measure_state(history, index) for index in range(state.index + 1))
         ]
         columns = np.array(rows, dtype=np.float64).T
         columns[~np.isfinite(columns)] = np.nan
         return Series(history.growth_times[: state.index + 1], *columns)
+
+
+def _indices(m: Measures) -> tuple[float, float, float]:
+    if m.n_dim == 2:
+        return m.gi_hull, m.gi_closing, m.gi_exposed
+    return m.gi_area_hull, m.gi_area_closing, np.nan if m.gi_sections is None else m.gi_sections
 
 
 def gi_plot(states: Sequence[Shown], width_mm: float | None) -> Figure:
@@ -76,10 +87,11 @@ def _checked(states: Sequence[Shown]) -> str:
 
 def _one(panels: Sequence[Axes], state: Shown) -> None:
     series, radius = Series.of(state), state.history.config.metrics.closing_radius
+    kind = "area, " if state.in_space else ""
     indices = (
-        (series.closing, f"closing, {radius:g} mm"),
-        (series.hull, "convex hull"),
-        (series.exposed, f"exposed, {radius:g} mm"),
+        (series.closing, f"{kind}closing, {radius:.4g} mm"),
+        (series.hull, f"{kind}convex hull"),
+        (series.other, "mean of sections" if state.in_space else f"exposed, {radius:g} mm"),
     )
     for (values, label), hue, dash in zip(indices, HUES, DASHES, strict=False):
         panels[0].plot(series.time, values, color=hue, linestyle=dash, linewidth=1.2, label=label)
@@ -109,6 +121,6 @@ def _several(panels: Sequence[Axes], states: Sequence[Shown]) -> None:
         if onset is not None:
             height = np.interp(onset.growth_time, series.time, series.closing)
             panels[0].plot([onset.growth_time], [height], marker="o", markersize=3.5, color=hue)
-    panels[0].set_ylabel("GI, closing [–]")
+    panels[0].set_ylabel("GI by area, closing [–]" if states[0].in_space else "GI, closing [–]")
     panels[1].set_ylabel("depth, max [mm]")
     add_legend(panels[0], loc="upper left")

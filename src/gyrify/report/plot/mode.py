@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from gyrify.errors import ConfigError
 from gyrify.report.drawn_slice import FloatArray, IntArray
 from gyrify.report.layout import legend
-from gyrify.report.mode_figure import ModeLines, mode_figure, mode_handles, wave_words
+from gyrify.report.mode_figure import AMPLITUDE, ModeLines, mode_figure, mode_handles, wave_words
+from gyrify.report.plot.bodies import Row, body_rows
+from gyrify.report.plot.field_colours import Paint
 from gyrify.report.plot.shown import Shown
 from gyrify.report.plot.slices import BAR_MM, Label, board, grid_columns
 from gyrify.report.plot.style import DOUBLE, SINGLE
+from gyrify.report.surface_drawing import DrawnBody
+from gyrify.run.onset.space_waves import normal_displacement
 from gyrify.solve.stability import Onset
 
+_PAINT: Final = Paint("normal displacement of the mode, relative [–]", "RdBu_r", 1.0, 0.0)
 Arrays = tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray]
 
 
@@ -27,6 +34,8 @@ def mode_plot(states: Sequence[Shown], width_mm: float | None) -> Figure:
         If a run has no onset.
     """
     onsets = [onset_of(state) for state in states]
+    if states[0].in_space:
+        return body_rows([mode_row(s, o) for s, o in zip(states, onsets, strict=True)], width_mm)
     width = width_mm or (SINGLE if len(states) == 1 else DOUBLE)
     if len(states) == 1 and width == SINGLE:
         return _one(states[0], onsets[0])
@@ -47,6 +56,19 @@ def mode_plot(states: Sequence[Shown], width_mm: float | None) -> Figure:
         each.draw(axes)
     legend(page.figure, mode_handles(), middle_mm=0.5 * BAR_MM)
     return page.figure
+
+
+def mode_row(state: Shown, onset: Onset) -> Row:
+    """The body at onset, displaced along its mode, and coloured by the mode's normal displacement."""
+    mesh, n = state.history.mesh, state.history.mesh.n_points
+    x, v = mesh.points + onset.displacement[:n], onset.vector[:n]
+    height = np.full(n, np.nan)
+    height[mesh.contour] = normal_displacement(mesh, onset.displacement[:n], v)
+    size = float(np.linalg.norm(v[mesh.contour], axis=1).max()) or 1.0
+    width = float(np.ptp(x[mesh.contour, 0]))
+    label = f"{state.name}, loss of stability at growth time {onset.growth_time:.5g}, {wave_words(onset)}"
+    values = height / (float(np.nanmax(np.abs(height))) or 1.0)
+    return Row(DrawnBody(mesh, x + AMPLITUDE * width / size * v), Label((label,), state.note), _PAINT, values)
 
 
 def onset_of(state: Shown) -> Onset:

@@ -13,6 +13,8 @@ import numpy as np
 from gyrify.errors import ConfigError
 from gyrify.metrics import Measures
 from gyrify.report.drawn_slice import DrawnSlice, FloatArray, closed_slice, periodic_slice
+from gyrify.report.surface_drawing import DrawnBody
+from gyrify.run.measuring import surface_depth
 from gyrify.run.summary import measure_state
 from gyrify.run.validity.converged import convergence, mark
 from gyrify.store.history import History
@@ -56,6 +58,18 @@ class Shown:
         return state_sheet(self.history, self.index)
 
     @property
+    def in_space(self) -> bool:
+        """Whether the body lies in space."""
+        return self.history.mesh.n_dim == 3
+
+    @cached_property
+    def body(self) -> DrawnBody:
+        """Surface and cells of the state of a body in space."""
+        return DrawnBody(
+            self.history.mesh, self.history.points(self.index), surface_depth(self.history, self.index)
+        )
+
+    @property
     def note(self) -> str:
         """What became of a run that did not complete; empty for one that did."""
         status = self.history.status
@@ -68,16 +82,14 @@ class Shown:
     def mark(self) -> str:
         """Whether the mesh is known to be converged for the numbers of the state."""
         is_end = self.history.status == "completed" and self.index == len(self.history) - 1
-        return mark(convergence(self.history.config, self.measures.gi_closing, is_complete=is_end))
+        return mark(convergence(self.history.config, self.measures.index, is_complete=is_end))
 
     @property
     def caption(self) -> str:
         """Growth time, index and number of gyri, and what is known of the mesh."""
         gyri = self.measures.n_gyri
-        return (
-            f"t = {self.growth_time:.4g}, GI {self.measures.gi_closing:.2f}, "
-            f"{gyri} {'gyrus' if gyri == 1 else 'gyri'} ({self.mark})"
-        )
+        index = f"GI {'by area ' if self.in_space else ''}{self.measures.index:.2f}"
+        return f"t = {self.growth_time:.4g}, {index}, {gyri} {'gyrus' if gyri == 1 else 'gyri'} ({self.mark})"
 
 
 def show(runs: Sequence[Run], at: float | None = None) -> list[Shown]:

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from gyrify.config.run_sections import OutputField
 from gyrify.errors import ConfigError
+from gyrify.report.plot.bodies import Row, body_rows, in_space_paint
 from gyrify.report.plot.field_colours import PAINTS, colour_bar, common_scale, draw_field
 from gyrify.report.plot.shown import Shown, per_triangle
 from gyrify.report.plot.slices import Board, Label, board, draw_slice
@@ -43,6 +44,8 @@ def stress_plot(states: Sequence[Shown], width_mm: float | None, stress: str | N
     """
     names = _chosen(stress)
     panels = [(state, name) for state in states for name in names]
+    if states[0].in_space:
+        return _bodies(states, names, width_mm)
     columns = min(len(panels), 3)
     page = board(
         [(state.drawing.low, state.drawing.high) for state in states for _ in names],
@@ -59,6 +62,21 @@ def stress_plot(states: Sequence[Shown], width_mm: float | None, stress: str | N
     return page.figure
 
 
+def _bodies(states: Sequence[Shown], names: Sequence[OutputField], width_mm: float | None) -> Figure:
+    """A row for every stress of every state."""
+    rows, is_alone = [], len(states) == 1
+    for state in states:
+        for name in names:
+            paint, label = in_space_paint(name), _label(state, name, is_alone)
+            rows.append(
+                Row(
+                    state.body, label, paint, paint.factor * fields(state.history, state.index, (name,))[name]
+                )
+            )
+    title = Label((f"{states[0].name}, {states[0].caption}",), states[0].note) if is_alone else None
+    return body_rows(rows, width_mm, title)
+
+
 def _chosen(stress: str | None) -> list[OutputField]:
     if stress is None:
         return list(STRESSES.values())
@@ -70,7 +88,7 @@ def _chosen(stress: str | None) -> list[OutputField]:
 
 
 def _label(state: Shown, name: OutputField, is_alone: bool) -> Label:
-    field = PAINTS[name].label.split(" [")[0]
+    field = (in_space_paint(name) if state.in_space else PAINTS[name]).label.split(" [")[0]
     return (
         Label((field,))
         if is_alone

@@ -16,11 +16,13 @@ from gyrify.errors import ConfigError, HistoryError
 from gyrify.report.drawn_slice import DrawnSlice, FloatArray, closed_slice, periodic_slice
 from gyrify.report.figures import draw_tissues
 from gyrify.report.layout import OUTLINE, legend, line
+from gyrify.report.plot.bodies import Row, body_rows
 from gyrify.report.plot.folded import tissue_handles
 from gyrify.report.plot.shown import short, words_of
 from gyrify.report.plot.slices import BAR_MM, Label, board, draw_lines, grid_columns
 from gyrify.report.plot.style import DOUBLE
 from gyrify.report.study_data import numeric, varied
+from gyrify.report.surface_drawing import DrawnBody
 from gyrify.store.folder import JOURNAL
 from gyrify.study import StoredPoint, final_state, read_results
 from gyrify.study.results import RESULTS
@@ -55,12 +57,18 @@ class _Panel:
         return bool(self.point.record.final_sha256)
 
     @property
+    def in_space(self) -> bool:
+        return self.has_slice and self.point.mesh.n_dim == 3
+
+    @property
     def label(self) -> Label:
         names = [f"{words_of(key)} {short(self.row[key])}" for key in self.keys] or [self.point.key]
         if self.row["status"] != "completed":
             return Label(tuple(names), f"run {self.row['status']}")
         gyri = self.row["n_gyri"]
-        return Label((*names, f"GI {self.row['gi_closing']:.2f}, {gyri} {'gyrus' if gyri == 1 else 'gyri'}"))
+        index = ("GI by area", "gi_area_closing") if self.in_space else ("GI", "gi_closing")
+        said = f"{index[0]} {self.row[index[1]]:.2f}"
+        return Label((*names, f"{said}, {gyri} {'gyrus' if gyri == 1 else 'gyri'}"))
 
 
 def is_study(folder: str | os.PathLike[str]) -> bool:
@@ -109,6 +117,9 @@ def study_plot(
     keys = _named(rows)
     rows, columns = _arranged(rows)
     panels = [_Panel(row, final_state(folder, str(row["key"])), keys) for row in rows]
+    in_space = [panel for panel in panels if panel.in_space]
+    if in_space:
+        return _bodies(in_space, len(panels), width_mm)
     frames = [(panel.drawing.low, panel.drawing.high) for panel in panels if panel.has_slice]
     if not frames:
         raise HistoryError(
@@ -126,6 +137,14 @@ def study_plot(
             draw_lines(axes, panel.drawing, panel.clamped)
     legend(page.figure, tissue_handles(), columns=3 if width >= DOUBLE else 2, middle_mm=0.5 * BAR_MM)
     return page.figure
+
+
+def _bodies(panels: Sequence[_Panel], count: int, width_mm: float | None) -> Figure:
+    """A row for every run of a study of bodies in space that has a state."""
+    rows = [Row(DrawnBody(panel.point.mesh, panel.point.points), panel.label) for panel in panels]
+    missing = count - len(panels)
+    note = f"{missing} of {count} runs have no state in space" if missing else ""
+    return body_rows(rows, width_mm, Label((), note) if note else None)
 
 
 def _named(rows: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:

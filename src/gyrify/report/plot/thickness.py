@@ -18,6 +18,7 @@ from gyrify.metrics.folds import gyri_of, periodic_extrema
 from gyrify.report.drawn_slice import FloatArray
 from gyrify.report.figures import draw_tissues
 from gyrify.report.layout import COLOURS, LINE_MM, MARGIN_MM, MM, scale_bar
+from gyrify.report.plot.bodies import Row, body_rows
 from gyrify.report.plot.field_colours import PAINTS, colour_bar, common_scale, draw_field
 from gyrify.report.plot.shown import Shown, per_triangle
 from gyrify.report.plot.slices import Label, clamped_line, common_frame, draw_lines, set_frame, write_label
@@ -87,7 +88,12 @@ def _folds(state: Shown, contour: FloatArray, arc: FloatArray) -> tuple[FloatArr
 
 
 def thickness_plot(states: Sequence[Shown], width_mm: float | None) -> Figure:
-    """A row per run: the cortex coloured by thickness, and thickness along the contour."""
+    """A row per run: the cortex coloured by thickness, and thickness along the contour.
+
+    Of a body in space the surface is coloured.
+    """
+    if states[0].in_space:
+        return _bodies(states, width_mm)
     profiles = [Profile.of(state) for state in states]
     scale = common_scale(_PAINT, [profile.thickness for profile in profiles], beyond=0.0)
     frame = common_frame([(state.drawing.low, state.drawing.high) for state in states])
@@ -112,6 +118,19 @@ def thickness_plot(states: Sequence[Shown], width_mm: float | None) -> Figure:
         profiles[0].thickness,
     )
     return figure
+
+
+def _bodies(states: Sequence[Shown], width_mm: float | None) -> Figure:
+    rows = [
+        Row(
+            state.body,
+            Label((f"{state.name}, {state.caption}",), state.note),
+            _PAINT,
+            fields(state.history, state.index, ("thickness",))["thickness"],
+        )
+        for state in states
+    ]
+    return body_rows(rows, width_mm)
 
 
 def _page(

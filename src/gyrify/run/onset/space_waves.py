@@ -55,6 +55,11 @@ def outwards_in_space(mesh: Mesh, u: FloatArray, mode: FloatArray) -> FloatArray
     return mode if height[peak] >= 0.0 else -mode
 
 
+def normal_displacement(mesh: Mesh, u: FloatArray, mode: FloatArray) -> FloatArray:
+    """(n_contour,) displacement of a mode along the outward normals of the surface."""
+    return _height(mesh, u, mode)[0]
+
+
 def _height(mesh: Mesh, u: FloatArray, mode: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
     """Normal displacement of the surface's points; corners and points of its triangles."""
     faces = np.searchsorted(mesh.contour, mesh.faces)

@@ -1,11 +1,10 @@
 // Where the scene is looked at from: a point of the plane [mm] and a scale [CSS pixels per mm].
 
-const BAR_WIDTH = 130; // pixels
-
 function createCamera(bounds) {
   const camera = { x: 0, y: 0, scale: 1, width: 1, height: 1, isFitted: true, natural: Infinity, ceiling: () => Infinity };
   const [left, low, right, high] = bounds;
 
+  addMoves(camera);
   camera.fit = () => {
     const [wide, tall] = [Math.max(right - left, 1e-9), Math.max(high - low, 1e-9)];
     // A wide slice keeps clear of the colour bar at the right.
@@ -19,32 +18,11 @@ function createCamera(bounds) {
     camera.most = 200 * camera.scale;
     camera.isFitted = true;
   };
-  camera.resize = (width, height) => {
-    [camera.width, camera.height] = [width, height];
-    if (camera.isFitted) camera.fit();
-  };
   camera.toScreen = (x, y) => [
     camera.width / 2 + (x - camera.x) * camera.scale,
     camera.height / 2 - (y - camera.y) * camera.scale,
   ];
-  camera.toPlane = (px, py) => [
-    camera.x + (px - camera.width / 2) / camera.scale,
-    camera.y - (py - camera.height / 2) / camera.scale,
-  ];
-  camera.pan = (dx, dy) => {
-    camera.x -= dx / camera.scale;
-    camera.y += dy / camera.scale;
-    camera.isFitted = false;
-  };
-  // Keeps the point under the pointer where it is.
-  camera.zoom = (factor, px = camera.width / 2, py = camera.height / 2) => {
-    const [x, y] = camera.toPlane(px, py);
-    const scale = clamp(camera.scale * factor, camera.least, camera.most);
-    camera.x = x + (camera.x - x) * (camera.scale / scale);
-    camera.y = y + (camera.y - y) * (camera.scale / scale);
-    camera.scale = scale;
-    camera.isFitted = false;
-  };
+  camera.drag = camera.pan;
   camera.copyFrom = (other) => {
     [camera.x, camera.y, camera.isFitted] = [other.x, other.y, false];
     camera.scale = other.scale;

@@ -10,6 +10,7 @@ const SHORT_LABELS = {
   thickness: "thickness",
   curvature: "curvature",
   contact_force: "contact force",
+  depth: "depth",
 };
 
 // One choice out of several, as native radio buttons: tab to the group, arrows within it.
@@ -50,13 +51,13 @@ function createFieldChoice(fields, chosen, onChange) {
   return createChoice("Colour by", options, chosen, onChange);
 }
 
-function createZoomButtons(pointer) {
+function createZoomButtons(pointer, what) {
   const button = (text, label, action) =>
     element("button", { type: "button", class: "zoom", "aria-label": label, title: label, click: action }, text);
   return element("div", { class: "zoom-buttons" },
     button("+", "zoom in", () => pointer.zoom(1.4)),
     button("−", "zoom out", () => pointer.zoom(1 / 1.4)),
-    button("⤢", "whole slice", pointer.fit));
+    button("⤢", `whole ${what}`, pointer.fit));
 }
 
 // The critical mode: the state that lost stability, displaced to and fro along its mode.
@@ -77,10 +78,10 @@ function createModeSwitch(viewer, onset, onChange) {
   });
   const waves = onset.mode_number ? `${onset.mode_number} waves of ${brief(onset.wavelength_mm, 3)} mm` : onset.kind;
   const about = `Critical mode: ${waves} at growth time ` +
-    `${brief(onset.growth_time)}. Orange: the state itself. The amplitude is arbitrary.`;
+    `${brief(onset.growth_time)}. ${viewer.what === "slice" ? "Orange: the state itself. " : ""}The amplitude is arbitrary.`;
   const bar = element("div", { class: "mode-bar", hidden: true }, element("span", {}, about),
     element("label", {}, "amplitude ", amplitude));
-  const choice = createSwitch("critical mode", "The shape along which the slice lost stability", false, (isOn) => {
+  const choice = createSwitch("critical mode", `The shape along which the ${viewer.what} lost stability`, false, (isOn) => {
     cancelAnimationFrame(request);
     show(bar, isOn);
     viewer.set({ mode: isOn ? 1 : null });

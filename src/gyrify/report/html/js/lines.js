@@ -29,10 +29,6 @@ function lineCorners(points, { from = -0.5, to = 0.5, values = null, isClosed = 
   return corners;
 }
 
-function drawable(value) {
-  return Number.isNaN(value) ? UNDEFINED_VALUE : value;
-}
-
 // At each point, where the left edges of its two segments meet; sharp corners are cut.
 function miters(points, isClosed) {
   const n = points.length / 2;

@@ -28,33 +28,6 @@ async function loadModel(run, payloadId) {
   return model;
 }
 
-// Keeps the last answer: a scene asks for the same frame several times.
-function remembered(compute) {
-  let lastKey;
-  let last;
-  return (...key) => {
-    const text = key.join();
-    if (text !== lastKey) [lastKey, last] = [text, compute(...key)];
-    return last;
-  };
-}
-
-function positionsOf({ low, step }, { values, columns }, row) {
-  const found = new Float32Array(columns);
-  for (let k = 0; k < columns; k += 1) found[k] = low[k & 1] + (values[row * columns + k] - 1) * step;
-  return found;
-}
-
-// One number per cell, or per point of the contour; NaN where it is undefined.
-function valuesOf(field, { values, columns }, row) {
-  const found = new Float64Array(columns);
-  for (let k = 0; k < columns; k += 1) {
-    const code = values[row * columns + k];
-    found[k] = code === 0 ? NaN : field.low[row] + (code - 1) * field.step[row];
-  }
-  return found;
-}
-
 // How many periods each corner of a triangle lies to the right of the point that it is: triangles that run
 // over the end of a strip are drawn whole.
 function periodShifts(model, array) {

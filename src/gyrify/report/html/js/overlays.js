@@ -74,37 +74,6 @@ function createScaleBar(viewer) {
   return host;
 }
 
-// The value of the shown field at a place of the canvas, or null: what it is, how exact, and of what.
-function probe(viewer, px, py) {
-  const { model, state, camera } = viewer;
-  const field = viewer.field();
-  const [x, y] = camera.toPlane(px, py);
-  if (field.place === "contour" && state.mode === null) {
-    const points = linePoints(viewer.positions(), model.lines.contour, model.period);
-    const place = nearestPoint(points, x, y, 14 / camera.scale);
-    if (place < 0) return null;
-    const k = place % model.lines.contour.length;
-    const value = model.values(state.frame, field.name)[k];
-    return { field, value, frame: state.frame, x: points[2 * place], y: points[2 * place + 1], node: model.lines.contour[k] };
-  }
-  const triangle = triangleAt(viewer, x, y);
-  if (triangle < 0) return null;
-  const cell = Math.floor(triangle / model.perCell);
-  const isTissue = field === REGION || state.mode !== null;
-  const value = isTissue ? null : model.values(state.frame, field.name)[cell];
-  return { field: isTissue ? REGION : field, value, frame: state.frame, x, y, cell, region: model.region[cell] };
-}
-
-// The sorted triangles are kept for as long as the shape is the same.
-function triangleAt(viewer, x, y) {
-  const key = `${viewer.state.frame} ${viewer.state.mode}`;
-  if (viewer.pickerKey !== key) {
-    viewer.pickerKey = key;
-    viewer.picker = createPicker(viewer.corners().slice());
-  }
-  return viewer.picker(x, y);
-}
-
 function createTooltip() {
   const host = element("div", { class: "tooltip", role: "status", "aria-live": "off", hidden: true });
   const tissue = (found) => (found.region === 1 ? "grey matter" : "white matter");
@@ -114,8 +83,8 @@ function createTooltip() {
     show(found, px, py, { width, height }) {
       const { field } = found;
       const { text, error } = field === REGION ? { text: tissue(found) } : exactly(found);
-      const place = `x ${brief(found.x)}, y ${brief(found.y)} mm`;
-      const what = found.node === undefined ? `cell ${found.cell} · ${tissue(found)}` : `contour node ${found.node}`;
+      const place = `${["x", "y", "z"].filter((axis) => axis in found).map((axis) => `${axis} ${brief(found[axis])}`).join(", ")} mm`;
+      const what = found.node === undefined ? `cell ${found.cell} · ${tissue(found)}` : found.node;
       host.replaceChildren(
         element("strong", { class: "tooltip-value" }, field === REGION ? text : withUnit(text, field.unit)),
         element("span", {}, field === REGION ? `cell ${found.cell}` : what),

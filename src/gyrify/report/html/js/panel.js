@@ -29,7 +29,7 @@ async function createPanel(run, payloadId, colours, { field = "von_mises", isAct
     const shown = viewer.state.mode === null
       ? `coloured by ${viewer.field().label}, growth time ${brief(model.times[player.frame])}`
       : `critical mode at onset, growth time ${brief(run.onset.growth_time)}`;
-    viewer.canvas.setAttribute("aria-label", `${run.name}, ${shown}. Plus and minus zoom, 0 shows all.`);
+    viewer.canvas.setAttribute("aria-label", `${run.name}, ${shown}. ${viewer.bar ? "Arrow keys turn, " : ""}${viewer.bar ? "plus" : "Plus"} and minus zoom, 0 shows all.`);
   };
   player.changed.listen((frame) => {
     if (mode) mode.leave();
@@ -55,11 +55,25 @@ function layOut({ viewer, player, tooltip, pointer, choice, mode, plots, colours
       false, (isOn) => viewer.set({ scope: isOn ? "state" : "run" })).host,
     createSwitch("mesh", "Draw the edges of the cells", false, (mesh) => viewer.set({ mesh })).host,
     mode && mode.host);
-  const missing = element("p", { class: "notice" }, "This browser offers no WebGL 2, which the scene needs.");
-  const scene = element("div", { class: "scene" }, viewer.isAble ? viewer.canvas : missing,
-    createColourBar(viewer, colours), createScaleBar(viewer), createZoomButtons(pointer), mode && mode.bar, tooltip.host);
+  const drawn = () => [viewer.canvas, createColourBar(viewer, colours), createScaleBar(viewer), createZoomButtons(pointer, viewer.what),
+    mode && mode.bar, tooltip.host];
+  const scene = element("div", { class: "scene" }, viewer.isAble ? drawn() : createMissing());
   return element("div", { class: "panel" },
     element("div", { class: "stage" },
-      element("div", { class: "toolbar" }, choice.host, options), scene, player.host),
+      element("div", { class: "toolbar" }, choice.host, options), scene, viewer.isAble ? viewer.bar : null, player.host),
     plots.host);
+}
+
+// What stands in place of a scene that cannot be drawn: the reason and, where the page carries it, folded.png.
+function createMissing() {
+  const picture = document.getElementById("picture");
+  const notice = element("p", { class: "notice" }, "This browser offers no WebGL 2, which the scene needs.",
+    picture ? " Below is the last state, as folded.png in the run folder shows it." : null);
+  if (!picture) return notice;
+  const canvas = element("canvas", { class: "still", role: "img", "aria-label": "the folded body from three sides, and cut across" });
+  createImageBitmap(new Blob([fromBase64(picture.textContent)], { type: "image/png" })).then((image) => {
+    [canvas.width, canvas.height] = [image.width, image.height];
+    canvas.getContext("2d").drawImage(image, 0, 0);
+  });
+  return [notice, canvas];
 }

@@ -22,13 +22,14 @@ async function showRun({ run, colours }) {
 }
 
 function createHints(run) {
-  const { indices, fields } = run.frames;
+  const { indices, fields, n_dim, position } = run.frames;
   const key = (text) => element("kbd", {}, text);
   return element("footer", { class: "hints" },
     element("p", {}, key("←"), " ", key("→"), " state by state, ", key("space"), " play, ", key("+"), " ", key("−"), " ",
-      key("0"), " zoom on the scene, drag to pan, click into a plot to go there."),
+      key("0"), n_dim === 3 ? " zoom and arrows turn on the scene, drag to turn, with shift to pan" : " zoom on the scene, drag to pan",
+      ", click into a plot to go there."),
     element("p", {}, `${indices.length} of ${run.plots[0].times.length} states, ${fields.length} fields. ` +
-      "Positions are stored to 1/65534 of the slice's size; every value under the pointer says how exact it is."));
+      `Positions are stored to 1/${position.codes - 1} of the ${n_dim === 3 ? "body" : "slice"}'s size; every value under the pointer says how exact it is.`));
 }
 
 showRun(report);

@@ -9,7 +9,7 @@ function outlinePath(values, isClosed) {
 // Tissues are filled between their lines: the cortex above the interface, white matter above the clamped side.
 // At the scale of the largest slice of the study, down to a quarter of the picture.
 function createOutline(outline, label, largest = 0) {
-  if (!outline) return element("div", { class: "no-outline" }, "no state");
+  if (!outline) return element("div", { class: "no-outline" }, "no picture");
   const { size: [width, height], is_closed: isClosed } = outline;
   const area = (upper, lower) => {
     if (isClosed) return outlinePath(upper, true) + outlinePath(lower, true);
@@ -30,7 +30,7 @@ function createOutline(outline, label, largest = 0) {
 const ENDED = { completed: "completed", failed: "failed", stopped: "stopped", interrupted: "interrupted" };
 
 function createThumbnail(run, index, largest, onOpen) {
-  const gi = run.values.gi_closing;
+  const gi = run.values.gi_closing ?? run.values.gi_area_closing ?? null;
   const result = run.status === "completed" ? `GI ${fixed(gi, 3)}` : ENDED[run.status] || run.status;
   return element("button", {
     type: "button", class: `thumbnail ${run.status === "completed" ? "" : "is-early"}`, click: () => onOpen(index),

@@ -30,27 +30,20 @@ void main() {
   colour = vec4(plain.a > 0.5 ? plain.rgb : mapped, 1.0);
 }`;
 
-const UNDEFINED_VALUE = 3e38;
-
 function createPainter(canvas) {
   const options = { antialias: false, depth: false, stencil: false, powerPreference: "low-power" };
   const gl = canvas.getContext("webgl2", options);
   if (!gl) return null;
-  const program = linked(gl);
+  const program = linked(gl, VERTEX_SHADER, FRAGMENT_SHADER);
   gl.useProgram(program);
-  const place = (name) => gl.getUniformLocation(program, name);
-  const uniforms = Object.fromEntries(
-    ["view", "pixel", "width", "limits", "plain", "undefinedColour"].map((name) => [name, place(name)]));
-  gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
-  for (const end of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
-    gl.texParameteri(gl.TEXTURE_2D, end, gl.NEAREST);
-  }
+  const uniforms = placesOf(gl, program, ["view", "pixel", "width", "limits", "plain", "undefinedColour"]);
+  const map = createMap(gl);
   gl.uniform3fv(uniforms.undefinedColour, bytesOf(UNDEFINED_COLOUR).map((byte) => byte / 255));
   const fine = createFineTarget(gl);
   return {
     gl,
     buffer: () => createBuffer(gl, program),
-    map: (bytes) => gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, 256, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, bytes),
+    map,
     begin(background, camera, isFine) {
       if (isFine) fine.bind();
       begin(gl, uniforms, background, camera);
@@ -64,19 +57,6 @@ function createPainter(canvas) {
   };
 }
 
-function linked(gl) {
-  const program = gl.createProgram();
-  for (const [kind, source] of [[gl.VERTEX_SHADER, VERTEX_SHADER], [gl.FRAGMENT_SHADER, FRAGMENT_SHADER]]) {
-    const shader = gl.createShader(kind);
-    gl.shaderSource(shader, source);
-    gl.compileShader(shader);
-    gl.attachShader(program, shader);
-  }
-  gl.linkProgram(program);
-  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
-  return program;
-}
-
 function begin(gl, uniforms, background, camera) {
   const { drawingBufferWidth: width, drawingBufferHeight: height } = gl;
   gl.viewport(0, 0, width, height);
@@ -85,30 +65,6 @@ function begin(gl, uniforms, background, camera) {
   const scale = camera.scale * (width / camera.width);
   gl.uniform4f(uniforms.view, camera.x, camera.y, (2 * scale) / width, (2 * scale) / height);
   gl.uniform2f(uniforms.pixel, 2 / camera.width, 2 / camera.height);
-}
-
-// A picture with smooth edges, four samples to a pixel. Without a graphics card it takes more than twice the time of
-// a plain one, so that it is drawn when the scene has come to rest.
-function createFineTarget(gl) {
-  const frame = gl.createFramebuffer();
-  const samples = gl.createRenderbuffer();
-  const size = [0, 0];
-  return {
-    bind() {
-      const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
-      gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-      if (size[0] === width && size[1] === height) return;
-      [size[0], size[1]] = [width, height];
-      gl.bindRenderbuffer(gl.RENDERBUFFER, samples);
-      gl.renderbufferStorageMultisample(gl.RENDERBUFFER, 4, gl.RGBA8, width, height);
-      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.RENDERBUFFER, samples);
-    },
-    show() {
-      gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
-      gl.blitFramebuffer(0, 0, ...size, 0, 0, ...size, gl.COLOR_BUFFER_BIT, gl.NEAREST);
-      gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    },
-  };
 }
 
 // Corners of triangles, and optionally pairs of them that make lines.
