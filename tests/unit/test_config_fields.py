@@ -52,7 +52,7 @@ CHOICES = {
     "boundary.clamp": ["hole", "none"],
     "dissipation.kind": ["drag", "kelvin_voigt", "none"],
     "solver.regularisation": ["shift", "projection"],
-    "solver.linear_solver": ["auto", "pardiso", "superlu"],
+    "solver.linear_solver": ["auto", "pardiso", "superlu", "cg"],
     "stability.sign": [1, -1],
     "contact.barrier_stiffness": ["auto", 1e-3, 5e4],
 }
