@@ -1,4 +1,4 @@
-"""One linear system of a growing body, at rest and while it buckles, by a factor and by conjugate gradients."""
+"""One linear system of a growing body, at rest and buckling, by a factor and by conjugate gradients."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ from gyrify.solve.types import FloatArray, IntArray
 # number of unknowns, that is over the points along an edge of the body. Next to a bifurcation the last digits
 # take most of the products and save no step: with 150 products at 33 411 unknowns a run to there took as many
 # steps as with 700, with 75 half as many again.
-_PRODUCTS: Final = 5.0
+_PRODUCTS: Final = 10.0
 # Relative residual of a solve that is asked for as one with a factor, what is too far from it to be one, and
 # products allowed for it.
 _RESIDUAL, _FAILED, _PATIENCE = 1e-6, 1e-2, 3000
