@@ -22,8 +22,8 @@ from gyrify.solve.quasistatic import grow
 from gyrify.solve.shift import shifted_factor
 from gyrify.solve.system import System
 
-# Edges on the outer surface [mm]: 13 440, 58 160 and 110 928 tetrahedra.
-EDGES = (4.0, 2.0, 1.5)
+# Edges on the outer surface [mm].
+EDGES = (4.0, 2.0)
 # Growth at which the body has begun to buckle, and its stiffness is indefinite.
 BUCKLING = 0.35
 # Relative residual: what a step of Newton's method asks for at most.
