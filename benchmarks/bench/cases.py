@@ -13,6 +13,7 @@ from bench.iteration import iteration
 from bench.kernels import kernels, threshold
 from bench.scale import fine, finest, quadratic, soft
 from bench.space.plan import space
+from bench.space.solvers import solvers
 from bench.standard import standard
 from bench.whole_run import whole_run
 
@@ -49,5 +50,6 @@ CASES = {
     "fine": Case(fine, "Finer meshes: the finest for a minute"),
     "finest": Case(finest, "Finer meshes to full growth", is_slow=True),
     "soft": Case(soft, "Soft cortex, little drag", is_slow=True),
+    "solvers": Case(solvers, "Linear systems of growing bodies in space, in turn", is_slow=True),
     "space": Case(space, "Constants for three dimensions", is_slow=True),
 }

@@ -56,6 +56,7 @@ BLOCKS = {
     "assembly": Block(("assembly",), only="cells: ", is_crossed=True),
     "whole-run": Block(("whole-run",)),
     "dynamics": Block(("dynamics",)),
+    "solvers": Block(("solvers",), is_crossed=True, is_wide=True),
     "factors": Block(("space",), only=r"^(pardiso|superlu), \d+ cells", is_crossed=True, is_wide=True),
     "multigrid": Block(("space",), only=r"^multigrid, \d+ cells", is_crossed=True, is_wide=True),
     "exponents": Block(("space",), only=": exponent of", is_crossed=True),

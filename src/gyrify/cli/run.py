@@ -195,6 +195,15 @@ def _check_command(summary: dict[str, Any], folder: Path) -> str:
     return command.replace("config.toml", quote(str(folder / "config.toml")), 1)
 
 
+def _solved_with(summary: dict[str, Any]) -> str:
+    """What solved the linear systems, and why where that is not the usual."""
+    name: str = summary["solver"]["linear_solver"]
+    if name != "cg":
+        return name
+    is_asked_for = "solver.linear_solver" in summary["parameters"]
+    return "conjugate gradients" + ("" if is_asked_for else ", since a factor would not fit into the memory")
+
+
 def _report(summary: dict[str, Any], folder: Path) -> None:
     from gyrify.config.words import decimals
 
@@ -210,6 +219,6 @@ def _report(summary: dict[str, Any], folder: Path) -> None:
     solver = summary["solver"]
     say(
         f"{solver['increments']} increments, {solver['newton_iterations']} iterations, "
-        f"{solver['wall_s']:.1f} s with {solver['linear_solver']}."
+        f"{solver['wall_s']:.1f} s with {_solved_with(summary)}."
     )
     say(f"Results in {folder}: folded.png, summary.json, metrics.csv, history.vtkhdf.")

@@ -62,8 +62,10 @@ class Solver(Section):
         "shift",
         "Where the stiffness is indefinite: shift it by the mass, or project it cell by cell (slower).",
     )
-    linear_solver: Literal["auto", "pardiso", "superlu"] = setting(
-        "auto", "Sparse direct solver; auto takes PARDISO where it is installed."
+    linear_solver: Literal["auto", "pardiso", "superlu", "cg"] = setting(
+        "auto",
+        "Sparse direct solver, or conjugate gradients (cg, in space), which keep no factor; auto takes "
+        "PARDISO where it is installed, else SuperLU, and cg where a factor would not fit into the memory.",
     )
 
 

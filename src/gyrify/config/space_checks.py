@@ -83,6 +83,16 @@ def built(config: Config) -> str:
     return ""
 
 
+def solver(config: Config) -> str:
+    """Conjugate gradients are for bodies in space."""
+    if config.geometry.n_dim == 3 or config.solver.linear_solver != "cg":
+        return ""
+    return (
+        'solver.linear_solver = "cg" is not allowed in the plane, where a factor takes little memory and '
+        'time. Try solver.linear_solver = "auto", the default.'
+    )
+
+
 def transition(config: Config) -> str:
     """A width belongs to a sigmoid profile."""
     growth = config.growth
@@ -105,4 +115,4 @@ def clamp(config: Config) -> str:
     )
 
 
-CHECKS: Final = (hole, meaning, built, transition, clamp)
+CHECKS: Final = (hole, meaning, built, solver, transition, clamp)

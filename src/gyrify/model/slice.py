@@ -19,9 +19,12 @@ from gyrify.errors import SolveError
 from gyrify.mesh.symmetry import representatives
 from gyrify.model.internal import INTERNAL
 from gyrify.model.meshing import build_mesh
+from gyrify.model.rigid import rigid_modes
+from gyrify.model.solver_choice import chosen_solver
 from gyrify.model.terms import CONSERVATIVE, GrowthStep, terms_of
 from gyrify.model.tissue import Tissue
-from gyrify.solve.linear import linear_solver
+from gyrify.solve.iterative.blocks import Nodes
+from gyrify.solve.linear import SolverName, linear_solver
 from gyrify.solve.newton import Criterion
 from gyrify.solve.problem import State, Stepping
 from gyrify.solve.quasi_newton import STEPS
@@ -66,10 +69,21 @@ class Slice(Tissue):
         self.contact_library = name
         self.__dict__.pop("surface", None)
 
+    @cached_property
+    def linear_solver(self) -> SolverName:
+        """What solves the linear systems, ``auto`` resolved."""
+        return chosen_solver(self.config, self.unknowns, self.state_shape)
+
+    def use_linear_solver(self, name: SolverName) -> None:
+        """Have linear systems solved by another library."""
+        self.__dict__["linear_solver"] = name
+
     def varied(self, config: Config) -> Slice:
         """Slice of another configuration on the same mesh; what depends on the mesh alone is shared."""
         other = Slice(config, self.mesh)
         other.contact_library = self.contact_library
+        if config.solver.linear_solver == self.config.solver.linear_solver:
+            other.use_linear_solver(self.linear_solver)
         shared = (
             "simplices",
             "pattern",
@@ -154,8 +168,11 @@ class Slice(Tissue):
 
     @property
     def old_steps(self) -> int:
-        """See `gyrify.solve.problem.Problem`: without dissipation they might end on a saddle."""
-        return 0 if self.is_conservative else STEPS
+        """See `gyrify.solve.problem.Problem`: without dissipation they might end on a saddle.
+
+        Without a factor there is none to use again.
+        """
+        return 0 if self.is_conservative or self.linear_solver == "cg" else STEPS
 
     @property
     def may_jump(self) -> bool:
@@ -243,7 +260,9 @@ class Slice(Tissue):
 
     def _system(self, moving: IntArray, couplings: IntArray, unknowns: Unknowns | None) -> System:
         pattern = self.pattern.pattern if self.patches is None else self.patches.pattern
-        solver, n_dofs = linear_solver(self.config.solver.linear_solver), int(np.prod(self.state_shape))
+        n_dofs = int(np.prod(self.state_shape))
+        nodes = Nodes.of(moving, rigid_modes(self.mesh.points)) if self.linear_solver == "cg" else None
+        solver = linear_solver(self.linear_solver, nodes)
         return System(moving, n_dofs, self.mesh.n_dim, pattern, solver, couplings, unknowns)
 
     def candidates(self, u: FloatArray) -> IntArray:

@@ -13,7 +13,7 @@ from gyrify.model.slice import Slice
 from gyrify.run.limits import Watch
 from gyrify.run.onset.detector import Detector
 from gyrify.run.onset.relax import relax
-from gyrify.solve.linear import linear_solver
+from gyrify.solve.linear import is_available
 from gyrify.solve.problem import State
 from gyrify.solve.quasistatic import grow
 from gyrify.store.history import History
@@ -158,10 +158,13 @@ class Run:
 
     def _linear_solver(self) -> str:
         """Library that solves; the one that the run began with, or its end would be another."""
-        solver = linear_solver(self.problem.config.solver.linear_solver).name
+        asked, solver = self.problem.config.solver.linear_solver, self.problem.linear_solver
         begun_with = self.journal.meta("linear_solver", solver)
         if begun_with == solver:
             return solver
+        if self._is_under_way and asked == "auto" and is_available(begun_with):
+            self.problem.use_linear_solver(begun_with)  # a machine of another memory would choose another
+            return begun_with
         if self._is_under_way:
             raise HistoryError(
                 f"The run was begun with {begun_with}, but solver.linear_solver is now {solver}: "

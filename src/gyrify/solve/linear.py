@@ -1,32 +1,35 @@
-"""Sparse symmetric factorisation with inertia: one interface, two libraries."""
+"""Sparse symmetric linear systems: factors with their inertia by two libraries, or conjugate gradients."""
 
 from __future__ import annotations
 
-from typing import Literal, Protocol
+from typing import Literal, Protocol, TypeGuard
 
 import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as sla
 
 from gyrify.errors import ConfigError, SolveError
+from gyrify.solve.iterative.blocks import Nodes
+from gyrify.solve.iterative.krylov import ConjugateGradients
 from gyrify.solve.types import FloatArray, IntArray
 
-SolverName = Literal["auto", "pardiso", "superlu"]
+SolverName = Literal["auto", "pardiso", "superlu", "cg"]
 
 
-class Factor(Protocol):
-    """A factorised symmetric matrix.
-
-    Attributes
-    ----------
-    n_negative : int
-        Number of negative pivots, that is of negative eigenvalues.
-    """
-
-    n_negative: int
+class Inverse(Protocol):
+    """What solves with a matrix."""
 
     def solve(self, right: FloatArray) -> FloatArray:
         """Solution of A x = right, (n,) or (n, k)."""
+        ...
+
+
+class Factor(Inverse, Protocol):
+    """A factorised symmetric matrix."""
+
+    @property
+    def n_negative(self) -> int:
+        """Number of negative pivots, that is of negative eigenvalues."""
         ...
 
 
@@ -58,14 +61,20 @@ class LinearSolver(Protocol):
         ...
 
 
-def linear_solver(name: SolverName = "auto") -> LinearSolver:
+def linear_solver(name: SolverName = "auto", nodes: Nodes | None = None) -> LinearSolver:
     """Solver by name; ``auto`` is PARDISO where it is installed, else SuperLU.
+
+    ``cg`` needs to know where the unknowns are.
 
     Raises
     ------
     ConfigError
         If PARDISO is asked for and not installed.
     """
+    if name == "cg":
+        if nodes is None:
+            raise ValueError("conjugate gradients need the nodes of the unknowns")
+        return ConjugateGradients(nodes)
     if name == "superlu":
         return SuperLU()
     try:
@@ -79,6 +88,13 @@ def linear_solver(name: SolverName = "auto") -> LinearSolver:
                 "Install it with: pip install mkl (x86-64 only), or choose 'superlu' or 'auto'.",
             ) from missing
         return SuperLU()
+
+
+def is_available(name: str) -> TypeGuard[SolverName]:
+    """Whether this is the name of a solver that is installed."""
+    if name == "pardiso":
+        return linear_solver("auto").name == name
+    return name in ("superlu", "cg")
 
 
 class SuperLU:

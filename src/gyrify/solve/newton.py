@@ -10,7 +10,9 @@ import numpy as np
 from gyrify.energy.total import TotalEnergy
 from gyrify.errors import SolveError
 from gyrify.solve.definite import DefiniteHessian
-from gyrify.solve.quasi_newton import QuasiNewton
+from gyrify.solve.iterative.inexact import InexactHessian
+from gyrify.solve.iterative.krylov import ConjugateGradients
+from gyrify.solve.quasi_newton import STEPS, QuasiNewton
 from gyrify.solve.result import Result, Solution, Stats
 from gyrify.solve.system import System
 from gyrify.solve.types import FloatArray, IntArray
@@ -104,7 +106,8 @@ def minimise(
     """
     before = (system.factorizations, system.analyses)
     at = start if isinstance(start, Iterate) else Iterate.at(total, start, system)
-    model, hessian = model or QuasiNewton(), DefiniteHessian(total, system, candidates, mass)
+    model = model or QuasiNewton(0 if isinstance(system.solver, ConjugateGradients) else STEPS)
+    hessian = _hessian(total, system, criterion, candidates, watch, mass)
     # MAX_NEWTON is what it comes to unless something else happens first.
     result, iteration = Result.MAX_NEWTON if np.isfinite(at.value) else Result.INADMISSIBLE, 0
     while result is Result.MAX_NEWTON:
@@ -124,8 +127,27 @@ def minimise(
     return Solution(at.u, result, at.residual, work)
 
 
+def _hessian(
+    total: TotalEnergy,
+    system: System,
+    criterion: Criterion,
+    candidates: Callable[[FloatArray], IntArray],
+    watch: Callable[[], None],
+    mass: FloatArray | None,
+) -> DefiniteHessian | InexactHessian:
+    """What gives descent directions: factors, or conjugate gradients where the system is solved by them."""
+    solver = system.solver
+    if isinstance(solver, ConjugateGradients):
+        return InexactHessian(total, system, solver, candidates, mass, criterion.force, watch)
+    return DefiniteHessian(total, system, candidates, mass)
+
+
 def _step(
-    total: TotalEnergy, at: Iterate, model: QuasiNewton, system: System, hessian: DefiniteHessian | None
+    total: TotalEnergy,
+    at: Iterate,
+    model: QuasiNewton,
+    system: System,
+    hessian: DefiniteHessian | InexactHessian | None,
 ) -> tuple[Iterate, Result]:
     """Step along the model's direction, with a new factor of a Hessian if given; the model learns from it."""
     try:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from gyrify.solve.linear import Factor
+from gyrify.solve.linear import Inverse
 from gyrify.solve.types import FloatArray
 
 # Steps with an old factor that are worth trying before a new one.
@@ -30,14 +30,14 @@ class QuasiNewton:
     ----------
     steps : int
         How many steps with an old factor are worth trying; 0 for plain Newton.
-    factor : Factor or None
+    factor : Inverse or None
         The factor; None where there is none to use again.
     contraction : float
         Residual after the last step over the residual before it [-].
     """
 
     steps: int = STEPS
-    factor: Factor | None = None
+    factor: Inverse | None = None
     contraction: float = 1.0
     _pairs: list[tuple[FloatArray, FloatArray, float]] = field(default_factory=list, repr=False)
 
@@ -45,7 +45,7 @@ class QuasiNewton:
         """Whether so few more steps can be expected to reach the goal."""
         return self.factor is not None and self.steps > 0 and residual * self.contraction**self.steps <= goal
 
-    def renew(self, factor: Factor | None) -> None:
+    def renew(self, factor: Inverse | None) -> None:
         """Take a new factor, or none."""
         self.factor, self.contraction = factor, 1.0
         self._pairs.clear()

@@ -5,7 +5,8 @@ r"""Stability of a state: inertia and lowest eigenpair of the tangent stiffness 
 K is the exact Hessian on the free degrees of freedom, M the lumped reference area m_i of each point. A
 state is stable where K has no negative pivot. The lowest eigenvalue is found by shift-invert: where K is
 indefinite it is first shifted to K + tau M, with tau doubled until no pivot is negative, so that the
-eigenvalue nearest to the shift is the lowest one.
+eigenvalue nearest to the shift is the lowest one. Where conjugate gradients take the place of factors, it is
+found by LOBPCG, and so are the negative ones that are counted.
 """
 
 from __future__ import annotations
@@ -19,6 +20,8 @@ import scipy.sparse.linalg as sla
 
 from gyrify.energy.term import Evaluation
 from gyrify.errors import SolveError
+from gyrify.solve.iterative.krylov import ConjugateGradients
+from gyrify.solve.iterative.lowest import Modes
 from gyrify.solve.linear import Factor
 from gyrify.solve.shift import shifted_factor
 from gyrify.solve.system import System
@@ -129,7 +132,13 @@ class Tangent:
     Attributes
     ----------
     n_negative : int
-        Number of negative pivots of K, that is of negative eigenvalues.
+        Number of negative pivots of K, that is of negative eigenvalues. Where no factor is kept, at most
+        `gyrify.solve.iterative.lowest.MOST_MODES`.
+
+    Raises
+    ------
+    SolveError
+        If K holds no numbers, or its lowest modes are not found where no factor is kept.
     """
 
     def __init__(
@@ -142,7 +151,16 @@ class Tangent:
         self._system, self.mass = system, mass
         self._data = system.assemble(evaluations, candidates)
         self._pattern = system.pattern
-        self.n_negative = system.factorise_data(self._data).n_negative
+        self._modes: Modes | None = None
+        self.n_negative: int
+        if isinstance(system.solver, ConjugateGradients):
+            system.require_numbers(self._data)
+            self._modes = system.solver.modes(self._data, mass)
+            self.n_negative = int(np.count_nonzero(self._modes.eigenvalues < 0.0))
+            if self.n_negative == 0:  # a negative one proves itself, that there is none does not
+                self._checked(self._modes.vectors[:, 0])
+        else:
+            self.n_negative = system.factorise_data(self._data).n_negative
 
     @property
     def is_stable(self) -> bool:
@@ -172,6 +190,8 @@ class Tangent:
         SolveError
             If none is found to the tolerance.
         """
+        if self._modes is not None:
+            return self._checked(self._modes.vectors[:, 0])
         return self._nearest(self._definite(guess), "LA")
 
     def _nearest(self, factor: Factor, which: str) -> Eigenpair:
@@ -195,8 +215,10 @@ class Tangent:
         SolveError
             If none is found to the tolerance, or there is none.
         """
-        factor = self._system.factorise_data(self._data)
-        pair = self._nearest(factor, "SA")
+        if self._modes is None:
+            pair = self._nearest(self._system.factorise_data(self._data), "SA")
+        else:
+            pair = self._checked(self._modes.vectors[:, max(self.n_negative - 1, 0)])
         if pair.eigenvalue >= 0.0:
             raise _unfound("no eigenvalue is negative")
         return pair

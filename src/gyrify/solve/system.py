@@ -126,8 +126,18 @@ class System:
         return self.solver.factorise_definite(data)
 
     def _begin(self, data: FloatArray) -> None:
-        """Count a factorisation, of numbers alone: a NaN is no negative pivot, and would pass for stable."""
+        """Count a factorisation, of numbers alone."""
         self.factorizations += 1
+        self.require_numbers(data)
+
+    def require_numbers(self, data: FloatArray) -> None:
+        """Refuse values that are none: a NaN is no negative pivot, and would pass for stable.
+
+        Raises
+        ------
+        SolveError
+            If the matrix holds something that is no finite number.
+        """
         if not np.isfinite(data).all():
             raise SolveError(
                 "The stiffness matrix holds values that are not finite numbers.",

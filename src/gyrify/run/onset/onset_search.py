@@ -59,6 +59,7 @@ class OnsetSearch:
         # A name of its own: a reference to this object would keep the factors until a collection of cycles.
         perfect = problem.varied(ideal) if is_perfect else Slice(ideal)
         perfect.contact_library = problem.contact_library
+        perfect.use_linear_solver(problem.linear_solver)
         self._problem = perfect
         self.onset: Onset | None = None
         self.changes: list[StabilityChange] = []

@@ -1,0 +1,1 @@
+"""Linear systems of bodies in space by conjugate gradients: without a factor, which would fill memory."""
