@@ -57,7 +57,14 @@ COPY = Way("Restore the file from a copy", args=("resume", "run"), first=restore
 ELSEWHERE = Way("Choose", args=(*RUN, "elsewhere"))
 MEND = Way("Correct or complete that line", '[growth]\nratio = "1/1.36"')
 
+_SURFACE = '[geometry]\nshape = "surface"\nfile = "{}"\ncortical_thickness = 1\n[mesh]\nrefine = 2'
+
 ADVICE: dict[str, list[Way]] = {
+    "no-file": [Way("surface.stl", _SURFACE.format("surface.stl"), first=bad_runs.write_tetrahedron)],
+    "lost-file": [
+        Way("Give the path of a surface", _SURFACE.format("brain.stl"), first=bad_runs.write_tetrahedron)
+    ],
+    "open-surface": [Way("Close its holes", _SURFACE.format("brain.off"), first=bad_runs.write_tetrahedron)],
     "negative": default("The default is 3.6", "[growth]\nratio = 3.6"),
     "zero": default("The default is 4069.0", "[geometry]\narea = 4069.0"),
     "absurd": default("The default is 9210.87", "[material]\nyoung_modulus = 9210.87"),

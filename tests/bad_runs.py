@@ -137,3 +137,21 @@ def full_disk(folder: Path, room: int) -> Iterator[None]:  # noqa: ARG001
         yield
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+def write_tetrahedron(folder: Path, n_faces: int = 4) -> None:
+    """Write a regular tetrahedron with edges of 28 mm, or some of its faces, as brain.off and surface.stl."""
+    corners = [(10, 10, 10), (10, -10, -10), (-10, 10, -10), (-10, -10, 10)]
+    faces = [(0, 1, 2), (0, 3, 1), (0, 2, 3), (1, 3, 2)][:n_faces]
+    lines = ["OFF", f"4 {n_faces} 0", *(" ".join(map(str, point)) for point in corners)]
+    (folder / "brain.off").write_text("\n".join([*lines, *("3 " + " ".join(map(str, f)) for f in faces)]))
+    text = ["solid"]
+    for face in faces:
+        text += [
+            "facet normal 0 0 0",
+            "outer loop",
+            *("vertex " + " ".join(map(str, corners[i])) for i in face),
+        ]
+        text += ["endloop", "endfacet"]
+    for name in ("surface.stl", "brain.stl"):
+        (folder / name).write_text("\n".join([*text, "endsolid"]) + "\n")

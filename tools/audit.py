@@ -26,7 +26,7 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 ROOT: Final = Path(__file__).resolve().parents[1]
-RUN_TIME: Final = ("fast", "export", "notebook", "cluster", "video")
+RUN_TIME: Final = ("fast", "export", "surface", "notebook", "cluster", "video")
 ALL: Final = (*RUN_TIME, "test", "docs")
 PERMISSIVE: Final = re.compile(
     r"MIT|BSD|Apache|PSF|Python Software Foundation|ISC|HPND|Zlib|CC0|MPL|Mozilla|Unlicense|Public Domain"
@@ -40,6 +40,8 @@ NAMED: Final = {
     "intel-openmp": "Intel End User License Agreement (part of MKL); optional, not free software",
     "ipctk": "MIT, by its repository; its metadata say nothing",
     "mkl": "Intel Simplified Software License; optional, free to use and pass on, not free software",
+    "netgen-mesher": "LGPL-2.1; optional, a library of its own in its wheel",
+    "netgen-occt": "LGPL-2.1 with an exception (Open CASCADE), comes with netgen-mesher; optional",
     "onemkl-license": "Intel Simplified Software License (part of MKL); optional",
     "tbb": "Apache-2.0 (oneTBB, part of MKL); optional",
     "tcmlib": "Intel Simplified Software License (part of MKL); optional",

@@ -18,9 +18,10 @@ SOURCE = Path(gyrify.__file__).parent
 LAYERS = [
     {"errors"},
     {"base"},
+    {"metrics"},
     {"physics", "mesh", "theory"},
     {"config"},
-    {"energy", "metrics"},
+    {"energy"},
     {"solve", "phenotype"},
     {"model"},
     {"store"},
@@ -32,9 +33,9 @@ LAYERS = [
 ]
 # What kernels and readers may know, more strictly than by their layer.
 MAY_IMPORT = {
-    "config": {"base", "errors"},
+    "config": {"base", "errors", "metrics"},
     "physics": {"base"},
-    "mesh": {"errors"},
+    "mesh": {"base", "errors", "metrics"},
     "theory": {"errors"},
     "energy": {"base", "physics"},
     "solve": {"energy", "errors"},
@@ -44,7 +45,7 @@ MAY_IMPORT = {
 # Packages that import inside functions, and why. Anything else is written at the top of its file.
 LAZY = {
     "cli": "the command line answers at once: a command imports what it needs when it runs",
-    "config": "the HTML table is for notebooks only",
+    "config": "the HTML table is for notebooks only, and few bodies come from files",
     "energy": "ipctk may be missing",
     "report": "a format of animations is loaded when it is asked for",
     "run": "warnings load what they look at",

@@ -19,6 +19,8 @@ DEFAULTS: dict[str, Any] = {
     "geometry.hole_fraction": 0.5, "geometry.cortical_thickness": 1.5,
     "geometry.length": 40.0, "geometry.depth": 18.0, "geometry.width": 40.0,
     "geometry.semi_axes": (39.4, 32.9, 32.9), "mesh.edge_length": 0.0,
+    "geometry.file": "", "geometry.hole_file": "", "geometry.interface_file": "",
+    "geometry.unit": "mm", "geometry.digest": "",
     "mesh.n_around": 216, "mesh.n_layers": 17, "mesh.n_cortex_layers": 6, "mesh.grading": "geometric",
     "mesh.split": "alternating", "mesh.node_jitter": 1e-3, "mesh.element": "linear",
     "mesh.inversion_resistance": 0.0, "mesh.refine": 0, "mesh.refine_cortex": 0,
@@ -39,7 +41,7 @@ DEFAULTS: dict[str, Any] = {
 }  # fmt: skip
 
 CHOICES = {
-    "geometry.shape": ["ellipse", "circle", "strip", "sphere", "ellipsoid", "patch"],
+    "geometry.shape": ["ellipse", "circle", "strip", "sphere", "ellipsoid", "patch", "surface"],
     "mesh.grading": ["geometric", "uniform"],
     "mesh.split": ["alternating", "one", "random"],
     "mesh.element": ["linear", "quadratic", "mean_dilatation"],
@@ -163,6 +165,10 @@ def test_counts_are_whole(key: str, value: object) -> None:
 
 @pytest.mark.parametrize(("key", "value"), [(k, v) for k, values in CHOICES.items() for v in values])
 def test_choice_is_allowed(key: str, value: object) -> None:
+    if (key, value) == ("geometry.shape", "surface"):  # what is read from a file needs one
+        with pytest.raises(ConfigError, match=r"not allowed without geometry\.file"):
+            Config().replace(**{key: value})
+        return
     assert value_of(Config().replace(**BESIDE.get(key, {}), **{key: value}), key) == value
 
 

@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Final, Literal
+import os
+from typing import TYPE_CHECKING, Annotated, Final, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from gyrify.config.base import Section, setting
+from gyrify.config.inputs.named_files import FILE_KEYS, digest
 from gyrify.config.registered import Registered
+from gyrify.errors import ConfigError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from gyrify.config.inputs.closed_surface import TriangleSurface
 
 PAPER: Final = "Wang 2019"
 # Of the standard slice: area inside its contour [mm²] and thickness of its cortex [mm].
@@ -19,20 +28,23 @@ STANDARD_THICKNESS: Final = 1.5
 Shape = Annotated[
     str,
     Registered(
-        ("ellipse", "circle", "strip", "sphere", "ellipsoid", "patch"),
+        ("ellipse", "circle", "strip", "sphere", "ellipsoid", "patch", "surface"),
         "gyrify.mesh.shapes",
         lambda module: module.SHAPES,
     ),
 ]
 # Shapes in space; what lies in the plane has no say in them, and they none in it.
-IN_SPACE: Final = frozenset({"sphere", "ellipsoid", "patch"})
+IN_SPACE: Final = frozenset({"sphere", "ellipsoid", "patch", "surface"})
 PERIODIC: Final = frozenset({"strip", "patch"})
+# Shapes that are read from files.
+FROM_FILES: Final = frozenset({"surface"})
 Axis = Annotated[float, Field(gt=0, le=1e5)]
 
 
 class Geometry(Section):
     """The body: in the plane a hollow ellipse or circle, or a strip that is periodic in x and clamped below;
-    in space a sphere or an ellipsoid, solid or hollow, or a patch, periodic in x and y and clamped below."""
+    in space a sphere or an ellipsoid, solid or hollow, a patch, periodic in x and y and clamped below, or
+    what is inside a closed surface from a file."""
 
     shape: Shape = setting("ellipse", "Shape of the body.", source=f"{PAPER}, Fig. 1")
     area: float = setting(
@@ -82,6 +94,65 @@ class Geometry(Section):
         unit="mm",
         strict=False,
     )
+    file: str = setting(
+        "",
+        "Closed surface of triangles (STL, PLY, OFF, OBJ, GIfTI, FreeSurfer); surface only, which needs it. "
+        "Relative to the configuration file.",
+    )
+    hole_file: str = setting("", "Closed surface of a hole in the white matter; surface only.")
+    interface_file: str = setting(
+        "",
+        "Interface under a surface, with the same points and triangles in the same order; without it, it "
+        "lies T below the surface.",
+    )
+    unit: Literal["um", "mm", "cm", "m"] = setting("mm", "Unit of length of the files.")
+    digest: str = setting(
+        "",
+        "SHA-256 of the files. Found when it is not given; if it is, files with another one are refused.",
+        pattern="^([0-9a-f]{64})?$",
+    )
+
+    @model_validator(mode="after")
+    def _read_files(self) -> Geometry:
+        """Paths no longer depend on the folder, and the digest is that of the files."""
+        if self.shape in FROM_FILES:
+            if not self.file:
+                raise ConfigError(
+                    f'geometry.shape = "{self.shape}" is not allowed without geometry.file, the surface.',
+                    'Try geometry.file = "surface.stl", relative to the configuration file.',
+                )
+            paths = {key: os.path.abspath(path) if (path := getattr(self, key)) else "" for key in FILE_KEYS}
+            found = digest(paths)
+            if self.digest not in ("", found):
+                raise ConfigError(
+                    "The files that [geometry] names are not those of geometry.digest: they have changed.",
+                    "Restore them, or leave geometry.digest out to take them as they are.",
+                )
+            self.__dict__.update(paths, digest=found)
+        return self
+
+    @property
+    def surface(self) -> TriangleSurface:
+        """Surface of a body from a file."""
+        from gyrify.config.inputs.body_surface import body_surface
+
+        return body_surface(self.file, self.unit, self.digest)
+
+    @property
+    def hole_surface(self) -> TriangleSurface | None:
+        """Surface of its hole; None where there is none."""
+        from gyrify.config.inputs.body_surface import body_surface
+
+        return body_surface(self.hole_file, self.unit, self.digest, "hole_file") if self.hole_file else None
+
+    @property
+    def interface_points(self) -> NDArray[np.float64] | None:
+        """(n_points, 3) points of its interface under those of the surface [mm], from a file; or None."""
+        from gyrify.config.inputs.body_surface import matching_points
+
+        if not self.interface_file:
+            return None
+        return matching_points(self.interface_file, self.file, self.unit, self.digest)
 
     @property
     def n_dim(self) -> int:
@@ -90,7 +161,12 @@ class Geometry(Section):
 
     @property
     def outer_axes(self) -> tuple[float, ...]:
-        """Semi-axes of the outer contour (a, b) or surface (a, b, c) of a body that is not periodic [mm]."""
+        """Semi-axes of the outer contour (a, b) or surface (a, b, c) of a body that is not periodic [mm].
+
+        Of a surface from a file, half its sizes along x, y and z.
+        """
+        if self.shape in FROM_FILES:
+            return tuple(float(0.5 * extent) for extent in self.surface.extents)
         if self.shape in IN_SPACE:
             return (self.semi_axes[0],) * 3 if self.shape == "sphere" else self.semi_axes
         ratio = self.aspect_ratio if self.shape == "ellipse" else 1.0
@@ -99,7 +175,12 @@ class Geometry(Section):
 
     @property
     def mean_radius(self) -> float:
-        """Mean radius R = √(ab), or ∛(abc) in space, of a body that is not periodic [mm]."""
+        """Mean radius R = √(ab), or ∛(abc) in space, of a body that is not periodic [mm].
+
+        Inside a surface, that of the ball of equal volume, a hole included.
+        """
+        if self.shape in FROM_FILES:
+            return math.cbrt(self.surface.volume / (4.0 / 3.0 * math.pi))
         if self.shape in IN_SPACE:
             return math.cbrt(math.prod(self.outer_axes))
         return math.sqrt(self.area / math.pi)
@@ -124,10 +205,18 @@ class Geometry(Section):
 
     @property
     def narrowest_wall(self) -> float:
-        """Smallest distance from the contour or outer surface to the other end of the wall [mm]."""
+        """Smallest distance from the contour or outer surface to the other end of the wall [mm].
+
+        Of a surface, half the smallest size: what no wall exceeds.
+        """
         if self.shape in PERIODIC:
             return self.depth
-        return min(self.outer_axes) * (1.0 - self.hole_fraction)
+        return min(self.outer_axes) * (1.0 - self.hole_share)
+
+    @property
+    def hole_share(self) -> float:
+        """Axes of the hole over those of the body; 0 for a surface, whose hole is of any shape."""
+        return 0.0 if self.shape in FROM_FILES else self.hole_fraction
 
 
 class MeshSettings(Section):
@@ -135,7 +224,8 @@ class MeshSettings(Section):
 
     edge_length: float = setting(
         0.0,
-        "In space, edge of the triangles on the outer surface; 0: one and a half times T.",
+        "In space, edge of the triangles on the outer surface; 0: one and a half times T, or those of a "
+        "file.",
         unit="mm",
         ge=0,
         le=1e5,

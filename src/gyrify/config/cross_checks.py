@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Final
 
 from gyrify.config import space_checks
+from gyrify.config.body_sections import FROM_FILES
 
 if TYPE_CHECKING:
     from gyrify.config.settings import Config
@@ -35,7 +36,7 @@ def faults(config: Config) -> list[str]:
 
 def _layers(config: Config) -> str:
     mesh = config.mesh
-    if mesh.n_cortex_layers < mesh.n_layers:
+    if mesh.n_cortex_layers < mesh.n_layers or config.geometry.shape in FROM_FILES:
         return ""
     return (
         f"mesh.n_cortex_layers = {mesh.n_cortex_layers} is not allowed: it must be below "
@@ -49,6 +50,12 @@ def _white_matter(config: Config) -> str:
     wall = geometry.narrowest_wall
     if geometry.cortical_thickness < MAX_WALL_SHARE * wall:
         return ""
+    if geometry.shape in FROM_FILES:
+        return (
+            f"geometry.cortical_thickness = {geometry.cortical_thickness!r} is not allowed: the body of "
+            f"geometry.file is {2.0 * wall:.4g} mm thick at most. Try geometry.cortical_thickness = "
+            f"{_below(0.5 * wall)} or less, or another geometry.unit."
+        )
     size = "geometry.semi_axes" if geometry.n_dim == 3 else "geometry.area"
     is_flat = geometry.shape in ("strip", "patch")
     remedy = "geometry.depth" if is_flat else f"{size}, or a smaller geometry.hole_fraction"
@@ -86,6 +93,11 @@ def _cells_in_space(config: Config) -> str:
     cells = space_checks.n_cells(config)
     if cells <= MAX_CELLS:
         return ""
+    if config.geometry.shape in FROM_FILES:
+        return (
+            f"mesh: about {cells:.3g} cells are not allowed: at most {MAX_CELLS}. Try a smaller mesh.refine, "
+            "a smaller mesh.n_cortex_layers, or a geometry.file with fewer triangles."
+        )
     enough = math.ceil(100.0 * space_checks.edge_length(config) * math.sqrt(cells / MAX_CELLS)) / 100.0
     return (
         f"mesh: about {cells:.3g} cells are not allowed: at most {MAX_CELLS}. "
@@ -169,7 +181,7 @@ def _axial(config: Config) -> str:
 def _transitions(config: Config) -> str:
     mesh = config.mesh
     white = (mesh.n_layers - mesh.n_cortex_layers) * 2**mesh.refine
-    if mesh.refine_cortex <= max(white, 0):
+    if mesh.refine_cortex <= max(white, 0) or config.geometry.shape in FROM_FILES:
         return ""
     return (
         f"mesh.refine_cortex = {mesh.refine_cortex} is not allowed: each time takes one of the {white} white "

@@ -16,6 +16,7 @@ from gyrify.config import cross_checks, toml_text
 from gyrify.config.base import Section, setting
 from gyrify.config.body_sections import Geometry, MeshSettings
 from gyrify.config.faults import raise_faults, sections, unknown_key
+from gyrify.config.inputs.named_files import FILE_KEYS, kept_name, resolved
 from gyrify.config.physics_sections import Boundary, Contact, Dissipation, Growth, Material
 from gyrify.config.preset_files import preset_data
 from gyrify.config.run_sections import Limits, Metrics, Output, SchemaVersion, Solver, Stability
@@ -28,6 +29,7 @@ NOT_HASHED: Final = frozenset({"output", "limits"})
 LATER: Final = (
     ("geometry", "width"),
     ("geometry", "semi_axes"),
+    *(("geometry", key) for key in (*FILE_KEYS, "unit", "digest")),
     ("mesh", "edge_length"),
     ("mesh", "inversion_resistance"),
     ("growth", "profile"),
@@ -102,13 +104,15 @@ class Config(Section):
         return cls(**{str(key): value for key, value in data.items()})
 
     @classmethod
-    def from_toml(cls, source: str | os.PathLike[str]) -> Config:
+    def from_toml(cls, source: str | os.PathLike[str], folder: Pathlike | None = None) -> Config:
         """Read a configuration from TOML.
 
         Parameters
         ----------
         source : str or Path
             The text itself, or (a Path) the file.
+        folder : path, optional
+            What the paths of its files are relative to; the current folder without it, or that of the file.
 
         Returns
         -------
@@ -117,7 +121,8 @@ class Config(Section):
         """
         if isinstance(source, os.PathLike):
             return cls.load(source)
-        return cls.from_dict(toml_text.parse(source))
+        tables = toml_text.parse(source)
+        return cls.from_dict(tables if folder is None else resolved(tables, as_path("folder", folder)))
 
     @classmethod
     def load(cls, path: Pathlike) -> Config:
@@ -166,6 +171,8 @@ class Config(Section):
             The new configuration.
         """
         given = {key: _as_dict(value) for key, value in self.model_dump(exclude_unset=True).items()}
+        if any(key.removeprefix("geometry.") in FILE_KEYS for key in overrides):
+            given.get("geometry", {}).pop("digest", None)  # other files have another one
         return type(self).from_dict(merge(given, nested(overrides)))
 
     def replace(self, **overrides: object) -> Config:
@@ -187,15 +194,19 @@ class Config(Section):
         """Return every value in nested dictionaries fit for JSON."""
         return self.model_dump(mode="json")
 
-    def to_toml(self) -> str:
-        """Write every value as TOML with its unit; reading it back gives an equal configuration."""
+    def to_toml(self, *, is_stored: bool = False) -> str:
+        """Write every value as TOML with its unit; reading it back gives an equal configuration.
+
+        A stored one names the copies of its files, as seen from the folder of the run.
+        """
         top = [(name, getattr(self, name), "") for name in self.top_level()]
         blocks = [toml_text.table(top)]
         for name, kind in sections(type(self)).items():
             section = getattr(self, name)
-            lines = [
-                (key, getattr(section, key), extra(field, "unit")) for key, field in kind.model_fields.items()
-            ]
+            values = {key: getattr(section, key) for key in kind.model_fields}
+            if is_stored and name == "geometry":
+                values |= {key: kept_name(key, values[key]) for key in FILE_KEYS if values[key]}
+            lines = [(key, values[key], extra(field, "unit")) for key, field in kind.model_fields.items()]
             blocks.append(f"[{name}]\n{toml_text.table(lines)}")
         return "\n".join(blocks)
 
@@ -209,7 +220,8 @@ class Config(Section):
         """SHA-256 (hexadecimal) of the canonical JSON of every value outside `output` and `limits`."""
         hashed = {key: value for key, value in self.to_dict().items() if key not in NOT_HASHED}
         for name, key in LATER:
-            if getattr(getattr(self, name), key) == sections(type(self))[name].model_fields[key].default:
+            default = sections(type(self))[name].model_fields[key].default
+            if key in FILE_KEYS or getattr(getattr(self, name), key) == default:  # the digest is of files
                 del hashed[name][key]
         hashed = {key: value for key, value in hashed.items() if value != {}}
         text = json.dumps(hashed, sort_keys=True, separators=(",", ":"), allow_nan=False)
@@ -232,7 +244,7 @@ def read_tables(path: Pathlike) -> dict[str, Any]:
             "it has a table [design].",
             f"Run it with: gyrify study {quote(str(path))}",
         )
-    return tables
+    return resolved(tables, path.absolute().parent)
 
 
 def merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:

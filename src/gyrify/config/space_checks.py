@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
+from gyrify.config.body_sections import FROM_FILES
+from gyrify.config.inputs.named_files import FILE_KEYS
 from gyrify.config.words import show
 
 if TYPE_CHECKING:
@@ -17,6 +19,8 @@ EDGE: Final = 1.5
 
 def edge_length(config: Config) -> float:
     """Edge on the outer surface of a body in space, before refinement [mm]."""
+    if config.geometry.shape in FROM_FILES:
+        return config.geometry.surface.mean_edge
     return config.mesh.edge_length or EDGE * config.geometry.cortical_thickness
 
 
@@ -28,6 +32,10 @@ def finer(config: Config) -> str:
 def n_cells(config: Config) -> float:
     """About how many tetrahedra a body in space has at most: three to a prism."""
     geometry, mesh = config.geometry, config.mesh
+    if geometry.shape in FROM_FILES:  # about as many white cells as two layers have
+        layers = mesh.n_cortex_layers + 2
+        n_triangles = int(geometry.surface.triangles.shape[0])
+        return 3.0 * n_triangles * layers * 8.0 ** (mesh.refine + mesh.refine_cortex)
     if geometry.shape == "patch":
         area = geometry.length * geometry.width
     else:
@@ -39,7 +47,7 @@ def n_cells(config: Config) -> float:
 def hole(config: Config) -> str:
     """A hole in the plane has a size; in space there may be none."""
     geometry = config.geometry
-    if geometry.shape in ("strip", "patch") or geometry.hole_fraction >= _SMALLEST_HOLE:
+    if geometry.shape in ("strip", "patch", "surface") or geometry.hole_fraction >= _SMALLEST_HOLE:
         return ""
     if geometry.n_dim == 3 and geometry.hole_fraction == 0.0:
         return ""
@@ -115,4 +123,43 @@ def clamp(config: Config) -> str:
     )
 
 
-CHECKS: Final = (hole, meaning, built, solver, transition, clamp)
+def files(config: Config) -> str:
+    """Nothing but a surface has files, and its triangles are those of its file."""
+    geometry, cut = config.geometry, config.mesh
+    if geometry.shape in FROM_FILES:
+        if cut.element == "quadratic":
+            return (
+                f'mesh.element = "quadratic" is not allowed with geometry.shape = "{geometry.shape}": such '
+                'cells are built in layers alone. Try mesh.element = "mean_dilatation".'
+            )
+        if cut.edge_length:
+            return (
+                f"mesh.edge_length = {cut.edge_length:g} is not allowed with geometry.shape = "
+                f'"{geometry.shape}": the triangles are those of the file, with edges of '
+                f"{geometry.surface.mean_edge:.3g} mm. Try mesh.edge_length = 0, and mesh.refine to halve "
+                "them."
+            )
+        return _parts(config)
+    defaults = type(geometry)()
+    for key in (*FILE_KEYS, "unit", "digest"):
+        if getattr(geometry, key) != getattr(defaults, key):
+            return (
+                f"geometry.{key} = {show(getattr(geometry, key))} is not allowed with geometry.shape = "
+                f'"{geometry.shape}", which has no files. Try geometry.shape = "surface".'
+            )
+    return ""
+
+
+def _parts(config: Config) -> str:
+    """Nothing but drag holds parts that hang together nowhere."""
+    n, dissipation = config.geometry.surface.n_parts, config.dissipation
+    is_held = dissipation.kind == "drag" and dissipation.number > 0.0
+    if n == 1 or (is_held and not config.stability.detect):
+        return ""
+    return (
+        f"geometry.file has {n} closed surfaces, and nothing but drag holds one beside the other. Try "
+        'dissipation.kind = "drag" with dissipation.number = 0.2, and stability.detect = false.'
+    )
+
+
+CHECKS: Final = (files, hole, meaning, built, solver, transition, clamp)

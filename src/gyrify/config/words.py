@@ -114,6 +114,8 @@ def allowed(field: FieldInfo) -> str:
     if typing.get_origin(kinds[0]) is tuple and not choices(field):
         parts.append(f"a list of {len(typing.get_args(kinds[0]))} numbers{_range(bounds(field))}{unit}")
     words = [show(word) for word in choices(field)]
+    if str in kinds and not words:
+        parts.append("text")
     if words:
         listed = ", ".join(words[:-1]) + " or " + words[-1] if len(words) > 1 else words[0]
         parts.append(f"a list of {listed}" if typing.get_origin(kinds[0]) is tuple else listed)

@@ -55,6 +55,8 @@ class Mesh:
         Lines across which the mesh is its own mirror image to the last bit, as far as it was built so.
     faces, interface_faces : (n, 3) int array
         In space, triangles of the outer surface and of the interface, counter-clockwise seen from outside.
+    notes : tuple of str
+        What a user should know about it, as sentences.
     """
 
     points: FloatArray
@@ -73,6 +75,7 @@ class Mesh:
     period_y: float | None = None
     faces: IntArray = field(default_factory=lambda: np.empty((0, 3), dtype=np.int64))
     interface_faces: IntArray = field(default_factory=lambda: np.empty((0, 3), dtype=np.int64))
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for array in (

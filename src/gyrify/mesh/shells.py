@@ -89,7 +89,7 @@ def build_shells(
         cell_lists.append(fan[:, None])
     for k in range(len(levels) - 1):
         if levels[k] == levels[k + 1]:
-            cell_lists.append(_prisms(surface.triangles[levels[k]], starts[k], starts[k + 1], k % 2 == 1))
+            cell_lists.append(prisms(surface.triangles[levels[k]], starts[k], starts[k + 1], k % 2 == 1))
         else:
             cell_lists.append(_transition(surface, levels[k], starts[k], starts[k + 1]))
     grey = len(cell_lists) - (len(levels) - 1 - interface)
@@ -142,8 +142,23 @@ def coarsening(
     return tuple(levels)
 
 
-def _prisms(triangles: IntArray, inner: int, outer: int, falling: bool) -> IntArray:
-    """(n, 3, 4) tetrahedra between two surfaces of one level."""
+def prisms(triangles: IntArray, inner: int, outer: int, falling: bool) -> IntArray:
+    """Tetrahedra between two surfaces with the same triangles.
+
+    Parameters
+    ----------
+    triangles : (n, 3) int array
+        In numbers of points of one surface.
+    inner, outer : int
+        What to add for those of each.
+    falling : bool
+        Whether edges between the surfaces start from the higher number; in turn, they lean to both sides.
+
+    Returns
+    -------
+    (n, 3, 4) int array
+        Of either orientation.
+    """
     ordered = np.sort(triangles, axis=1)
     if falling:
         ordered = ordered[:, ::-1]

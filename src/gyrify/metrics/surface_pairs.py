@@ -13,6 +13,8 @@ from gyrify.metrics.surface import FloatArray, IntArray, face_vectors, vertex_no
 # Walls of a sulcus face each other: the cosine of the angle between their normals is below this.
 _FACING: Final = -0.3
 _NEAREST: Final = 8
+# Volumes over the cube of the size of their corners that are rounding.
+_ROUNDING: Final = 1e-12
 
 
 def crosses_itself(points: FloatArray, faces: IntArray) -> bool:
@@ -21,32 +23,78 @@ def crosses_itself(points: FloatArray, faces: IntArray) -> bool:
     Every crossing of two triangles has such an edge. The test knows nothing of the solver that made the
     state.
     """
+    return any(hit.size > 0 for _, hit in _crossings(points, faces))
+
+
+def crossings(points: FloatArray, faces: IntArray) -> tuple[IntArray, IntArray]:
+    """(n, 2) points of the edges that pass through triangles, and (n,) which triangles."""
+    found = list(_crossings(points, faces))
+    return np.concatenate([edges for edges, _ in found]), np.concatenate([hit for _, hit in found])
+
+
+def _crossings(points: FloatArray, faces: IntArray) -> Iterator[tuple[IntArray, IntArray]]:
+    """Crossings, by classes of edges and triangles of like size.
+
+    Pairs that may touch are searched within the sum of the largest radii, so that one long edge does not make
+    all others look far.
+    """
     edges = np.unique(
         np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], 2).reshape(-1, 2), axis=1), axis=0
     )
     ends, corners = points[edges], points[faces]
     middles, centres = ends.mean(axis=1), corners.mean(axis=1)
-    reach = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).max() / 2.0
-    reach += np.linalg.norm(corners - centres[:, None], axis=2).max()
-    near = cKDTree(middles).sparse_distance_matrix(cKDTree(centres), reach, output_type="ndarray")
-    edge, face = near["i"], near["j"]
-    apart = ~np.any(edges[edge][:, :, None] == faces[face][:, None, :], axis=(1, 2))
-    return bool(_pierce(ends[edge[apart]], corners[face[apart]]).any())
+    lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / 2.0
+    sizes = np.linalg.norm(corners - centres[:, None], axis=2).max(axis=1)
+    for of_edges in _size_classes(lengths):
+        tree = cKDTree(middles[of_edges])
+        for of_faces in _size_classes(sizes):
+            reach = lengths[of_edges].max() + sizes[of_faces].max()
+            near = tree.sparse_distance_matrix(cKDTree(centres[of_faces]), reach, output_type="ndarray")
+            edge, face = of_edges[near["i"]], of_faces[near["j"]]
+            close = near["v"] <= lengths[edge] + sizes[face]
+            edge, face = edge[close], face[close]
+            apart = ~np.any(edges[edge][:, :, None] == faces[face][:, None, :], axis=(1, 2))
+            edge, face = edge[apart], face[apart]
+            hit = _pierce(ends[edge], corners[face])
+            yield edges[edge[hit]], face[hit]
+
+
+def _size_classes(sizes: FloatArray) -> list[IntArray]:
+    """Numbers of those of like size: those above the median by factors of two, the rest in one class."""
+    steps = np.floor(np.log2(np.maximum(sizes, 1e-300) / np.median(sizes))).astype(np.int64)
+    steps = np.maximum(steps, 0)
+    return [np.flatnonzero(steps == step) for step in np.unique(steps)]
 
 
 def _pierce(ends: FloatArray, corners: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Which of (n, 2, 3) edges pass through which of (n, 3, 3) triangles."""
+    """Which of (n, 2, 3) edges pass through which of (n, 3, 3) triangles.
+
+    What lies in the plane of a triangle but for rounding touches it, and does not pass through.
+    """
     p, q = ends[:, 0], ends[:, 1]
     a, b, c = (corners[:, k] for k in range(3))
     below, above = _volume(a, b, c, p), _volume(a, b, c, q)
     sides = np.stack([_volume(p, q, a, b), _volume(p, q, b, c), _volume(p, q, c, a)], axis=1)
     inside = np.all(sides > 0.0, axis=1) | np.all(sides < 0.0, axis=1)
-    return np.asarray((below * above < 0.0) & inside)
+    size = np.abs(np.concatenate([ends, corners], axis=1) - p[:, None]).max(axis=(1, 2))
+    is_apart = np.minimum(np.abs(below), np.abs(above)) > _ROUNDING * size**3
+    return np.asarray((below * above < 0.0) & inside & is_apart)
 
 
 def _volume(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray) -> FloatArray:
     """Six times the signed volume of tetrahedra."""
     return np.asarray(np.einsum("ni,ni->n", np.cross(b - a, c - a), d - a))
+
+
+def contains(corners: FloatArray, point: FloatArray) -> bool:
+    """Whether a closed surface with (n, 3, 3) corners has a point inside: its solid angle is then 4 pi."""
+    to = corners - point
+    size = np.linalg.norm(to, axis=2)
+    top = np.einsum("ni,ni->n", to[:, 0], np.cross(to[:, 1], to[:, 2]))
+    below = size.prod(axis=1)
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        below = below + np.einsum("ni,ni->n", to[:, i], to[:, j]) * size[:, k]
+    return bool(abs(np.arctan2(top, below).sum()) > np.pi)
 
 
 def smallest_gap(points: FloatArray, faces: IntArray) -> float:

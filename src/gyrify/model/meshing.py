@@ -6,14 +6,17 @@ from collections.abc import Iterable
 from typing import Final
 
 from gyrify.config import Config
+from gyrify.config.body_sections import FROM_FILES
 from gyrify.config.space_checks import edge_length
 from gyrify.errors import ConfigError, MeshError
 from gyrify.mesh import Mesh
 from gyrify.mesh.layered import layered_mesh
 from gyrify.mesh.layered_grid import Layers
 from gyrify.mesh.quality import SliverError
-from gyrify.mesh.shapes import SolidShape, shape_of
+from gyrify.mesh.shapes import SolidShape, SurfaceBody, shape_of
 from gyrify.mesh.shelled import ShellLayers, shell_mesh
+from gyrify.mesh.surface_mesh import jittered
+from gyrify.model.kept_mesh import mesh_inside
 
 _FEWEST_COLUMNS, _MOST_COLUMNS = 24, 4096
 _MOST_LAYERS: Final = 64
@@ -47,7 +50,11 @@ def build_mesh(config: Config, like: Config | None = None) -> Mesh:
 
 
 def _built(config: Config, like: Config) -> Mesh:
-    mesh, shape = config.mesh, shape_of(config.geometry)
+    mesh = config.mesh
+    if config.geometry.shape in FROM_FILES:
+        return jittered(mesh_inside(config), mesh.node_jitter, config.seed)
+    shape = shape_of(config.geometry)
+    assert not isinstance(shape, SurfaceBody)
     if isinstance(shape, SolidShape):
         other = shape_of(like.geometry)
         assert isinstance(other, SolidShape)

@@ -10,12 +10,14 @@ from typing import Any, Final
 
 from gyrify.base.versions import versions
 from gyrify.config import Config
+from gyrify.config.inputs.named_files import FILE_KEYS
 from gyrify.config.rows import rows
 from gyrify.config.words import show
 from gyrify.errors import HistoryError
 from gyrify.store.derived import read_summary
 from gyrify.store.folder import JOURNAL
 from gyrify.store.journal import Journal
+from gyrify.store.kept_inputs import stored_config
 
 # What a run that ended leaves beside its journal and its summary.
 _DERIVED: Final = ("metrics.csv", "folded.png", "history.vtkhdf")
@@ -96,7 +98,8 @@ def known_run(config: Config, folder: Path) -> KnownRun | None:
     if not (folder / JOURNAL).exists():
         return None
     with closing(Journal.open(folder / JOURNAL, read_only=True)) as journal:
-        stored, status = Config.from_toml(journal.meta("config")), journal.meta("status", "running")
+        stored = stored_config(journal.meta("config"), journal.path)
+        status = journal.meta("status", "running")
         result_hash = journal.result_hash
     if stored.config_hash != config.config_hash:
         raise HistoryError(
@@ -121,7 +124,9 @@ def _own_summary(folder: Path, result_hash: str) -> dict[str, Any] | None:
 
 def _changes(stored: Config, config: Config) -> dict[str, object]:
     before = {row.key: row.value for row in rows(stored)}
-    return {row.key: row.value for row in rows(config) if row.value != before[row.key]}
+    after = {row.key: row.value for row in rows(config)}
+    elsewhere = {f"geometry.{key}" for key in FILE_KEYS}  # the digest tells whether files are the same
+    return {key: value for key, value in after.items() if value != before[key] and key not in elsewhere}
 
 
 def _differences(stored: Config, config: Config) -> str:

@@ -11,6 +11,7 @@ from gyrify.base.arguments import Pathlike, as_path
 from gyrify.base.versions import versions
 from gyrify.config import Config, ConfigLike, as_config
 from gyrify.errors import ConfigError
+from gyrify.model.kept_mesh import mesh_digest
 from gyrify.model.slice import Slice
 from gyrify.run.progress import progress_observer
 from gyrify.run.repeat import known_run
@@ -19,6 +20,7 @@ from gyrify.store.disk_faults import storage_faults
 from gyrify.store.folder import JOURNAL, new_folder, stored_folder, write_config
 from gyrify.store.history import History
 from gyrify.store.journal import Journal
+from gyrify.store.kept_inputs import inputs_of, require_mesh, stored_config, write_inputs
 
 __all__ = ["Observer", "Progress", "kept_run", "new_run", "resume", "simulate", "stored_run"]
 
@@ -51,8 +53,12 @@ def new_run(config: ConfigLike, out: Pathlike | None = None, *, overwrite: bool 
     if out is None:
         yield Run(problem, Journal.create(None, meta))
         return
-    folder = as_path("out", out)
+    folder, inputs = as_path("out", out), inputs_of(config)
+    meta["config"] = config.to_toml(is_stored=True)
+    if inputs:
+        meta["mesh"] = mesh_digest(problem.mesh)
     with new_folder(folder, meta["config"], overwrite) as note:
+        write_inputs(inputs, folder)
         journal = Journal.create(folder / JOURNAL, meta)
         try:
             yield Run(problem, journal, note)
@@ -85,16 +91,17 @@ def stored_run(run: Pathlike, overrides: Mapping[str, object] | None = None) -> 
     folder = as_path("run", run)
     with stored_folder(folder) as note:
         journal = Journal.open(folder / JOURNAL)
-        config = Config.from_toml(journal.meta("config"))
+        config = stored_config(journal.meta("config"), journal.path)
         if overrides:
             config = _changed(config, overrides)
-            journal.set_meta(config=config.to_toml())
+            journal.set_meta(config=config.to_toml(is_stored=True))
         with storage_faults(folder):
             if overrides or not (folder / "config.toml").exists():
-                write_config(folder, config.to_toml())
+                write_config(folder, config.to_toml(is_stored=True))
             (folder / "summary.json").unlink(missing_ok=True)  # it told of an earlier end
         try:
-            yield Run(Slice(config), journal, f"{note} {_changed_versions(journal)}".strip())
+            problem = require_mesh(Slice(config), journal)
+            yield Run(problem, journal, f"{note} {_changed_versions(journal)}".strip())
         finally:
             journal.settle()
 

@@ -12,6 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from gyrify.config import Config
+from gyrify.config.inputs.named_files import FILE_KEYS, kept_name
 from gyrify.config.rows import rows
 from gyrify.metrics import Measures
 from gyrify.metrics.quantities import Quantity, by_key
@@ -132,11 +133,14 @@ def _summary(history: History, measures: Measures) -> dict[str, Any]:
 
 def _parameters(config: Config) -> dict[str, Any]:
     """What a reader asks for first, and every other value that is not the default; by dotted key."""
-    return {
+    told = {
         row.key: list(row.value) if isinstance(row.value, tuple) else row.value
         for row in rows(config)
         if row.key in _TOLD or (row.default is not None and row.value != row.default)
     }
+    # where a file lies says nothing: its copy in the folder is told
+    paths = {f"geometry.{key}": key for key in FILE_KEYS}
+    return {key: kept_name(paths[key], str(value)) if key in paths else value for key, value in told.items()}
 
 
 def _has_unit(name: str, known: Mapping[str, Quantity]) -> bool:

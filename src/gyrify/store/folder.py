@@ -8,6 +8,7 @@ from pathlib import Path
 from shlex import quote
 from typing import Final
 
+from gyrify.config.inputs.named_files import kept_files
 from gyrify.errors import HistoryError
 from gyrify.store.disk_faults import storage_faults
 from gyrify.store.files import refuse_link, whole_file
@@ -101,5 +102,5 @@ def write_config(folder: Path, config: str) -> None:
 def _leftovers(folder: Path) -> Iterator[Path]:
     """Files of an earlier run, and nothing else that a user may keep in the folder."""
     names = [*RUN_FILES, *(f"{JOURNAL}{suffix}" for suffix in ("-wal", "-shm", "-journal"))]
-    paths = (folder / name for name in names)
+    paths = (*(folder / name for name in names), *kept_files(folder))
     return (path for path in paths if path.is_symlink() or path.exists())

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from gyrify.base.arguments import Pathlike, as_path
-from gyrify.config import Config
 from gyrify.errors import HistoryError
 from gyrify.mesh import Mesh
 from gyrify.model.slice import Slice
@@ -18,6 +17,7 @@ from gyrify.solve.result import Stats
 from gyrify.solve.types import FloatArray
 from gyrify.store.database import RERUN
 from gyrify.store.journal import Journal
+from gyrify.store.kept_inputs import require_mesh, stored_config
 from gyrify.store.lock import has_owner
 from gyrify.store.provenance import Provenance
 from gyrify.store.stability_views import StabilityViews
@@ -38,7 +38,9 @@ class History(Views, StabilityViews, Provenance):
 
     def __init__(self, journal: Journal, problem: Slice | None = None) -> None:
         self.journal = journal
-        self.config = Config.from_toml(journal.meta("config")) if problem is None else problem.config
+        self.config = (
+            stored_config(journal.meta("config"), journal.path) if problem is None else problem.config
+        )
         if problem is not None:
             self.__dict__["slice"] = problem
         # What was measured of stored states, which never change; see `gyrify.run.measuring`.
@@ -74,7 +76,7 @@ class History(Views, StabilityViews, Provenance):
     @cached_property
     def slice(self) -> Slice:
         """The problem that was solved."""
-        return Slice(self.config)
+        return require_mesh(Slice(self.config), self.journal)
 
     @property
     def mesh(self) -> Mesh:

@@ -12,6 +12,7 @@ from typing import Any, Final, Literal, get_args
 
 from gyrify.base.arguments import Pathlike, as_path, plain_tables
 from gyrify.config import Config, toml_text
+from gyrify.config.inputs.named_files import resolved
 from gyrify.config.settings import merge, read_tables
 from gyrify.config.words import shorten, show
 from gyrify.errors import ConfigError
@@ -186,7 +187,7 @@ def _base(table: object, folder: Path) -> Config:
     """The base: a configuration's own tables over a preset or over a file."""
     if not isinstance(table, Mapping):
         raise ConfigError(f"base = {show(table)} is not a table.", 'Write [base] with preset = "wang2019".')
-    own = dict(table)
+    own = resolved(table, folder)
     source = own.pop("config", None)
     if source is None:
         return Config.from_dict(own)

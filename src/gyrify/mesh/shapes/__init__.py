@@ -11,6 +11,7 @@ from gyrify.mesh.shapes.patch import Patch
 from gyrify.mesh.shapes.shape import Shape
 from gyrify.mesh.shapes.solid import SolidShape
 from gyrify.mesh.shapes.strip import PeriodicStrip
+from gyrify.mesh.shapes.surface_body import SurfaceBody
 
 __all__ = [
     "SHAPES",
@@ -20,6 +21,7 @@ __all__ = [
     "PeriodicStrip",
     "Shape",
     "SolidShape",
+    "SurfaceBody",
     "shape_of",
 ]
 
@@ -40,18 +42,31 @@ def _patch(geometry: Any) -> Patch:
     return Patch(geometry.length, geometry.width, geometry.depth, geometry.cortical_thickness)
 
 
+def _surface(geometry: Any) -> SurfaceBody:
+    outer, hole = geometry.surface, geometry.hole_surface
+    return SurfaceBody(
+        outer.points,
+        outer.triangles,
+        geometry.cortical_thickness,
+        geometry.mean_radius,
+        None if hole is None else (hole.points, hole.triangles),
+        geometry.interface_points,
+    )
+
+
 # By the value of ``geometry.shape``: what makes the shape of that section of a configuration.
-SHAPES: Final[dict[str, Callable[[Any], Shape | SolidShape]]] = {
+SHAPES: Final[dict[str, Callable[[Any], Shape | SolidShape | SurfaceBody]]] = {
     "ellipse": _ellipse,
     "circle": _ellipse,
     "strip": _strip,
     "sphere": _ellipsoid,
     "ellipsoid": _ellipsoid,
     "patch": _patch,
+    "surface": _surface,
 }
 
 
-def shape_of(geometry: Any) -> Shape | SolidShape:
+def shape_of(geometry: Any) -> Shape | SolidShape | SurfaceBody:
     """The shape of a section ``geometry`` of a configuration.
 
     Raises

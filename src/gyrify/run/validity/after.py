@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final
 
+from gyrify.config.body_sections import FROM_FILES
 from gyrify.run.validity.collapse import collapse
 from gyrify.run.validity.folding import sawtooth, smooth_against_theory
 
@@ -42,7 +43,8 @@ def fold_resolution(history: History, summary: dict[str, Any]) -> list[str]:
         return []
     where, advice = "contour", "raise mesh.n_around"
     if history.mesh.n_dim == 3:
-        where, advice = "surface", "lower mesh.edge_length"
+        is_read = history.config.geometry.shape in FROM_FILES
+        where, advice = "surface", "raise mesh.refine" if is_read else "lower mesh.edge_length"
     return [f"A fold spans only {nodes:.1f} points of the {where} (8 are needed to resolve it): {advice}."]
 
 

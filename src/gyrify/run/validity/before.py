@@ -10,6 +10,7 @@ from gyrify.run.validity.lengths import check_lengths
 from gyrify.run.validity.locking import locking
 from gyrify.run.validity.ranges import check_ranges
 from gyrify.run.validity.resolution import resolution
+from gyrify.run.validity.surface_notes import surface_notes
 
 if TYPE_CHECKING:
     from gyrify.config import Config
@@ -20,6 +21,7 @@ CHECKS: Final[tuple[Callable[[Config], list[str]], ...]] = (
     resolution,
     locking,
     inversion,
+    surface_notes,
 )
 
 

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 DEGREE: Final = 4
 # Ratio of growth from which white matter counts as not growing.
 _STILL: Final = 1e3
+# Smallest over largest radius from which a surface from a file counts as a sphere.
+_ROUND: Final = 0.95
 
 
 def require_covered(config: Config) -> None:
@@ -58,7 +60,12 @@ def sphere_of(config: Config) -> Sphere:
     """
     from gyrify.theory import Sphere
 
-    shared = _shared(config)
+    shared, geometry = _shared(config), config.geometry
+    if geometry.shape == "surface" and (geometry.hole_file or geometry.surface.roundness < _ROUND):
+        raise ConfigError(
+            "the theory is that of a sphere, and the surface of geometry.file is none.",
+            'Compare with geometry.shape = "sphere" of the same volume.',
+        )
     if config.material.poisson_ratio != config.material.poisson_ratio_white:
         raise ConfigError(
             "the theory of a sphere has one Poisson ratio.",
@@ -97,7 +104,7 @@ def _shared(config: Config) -> dict[str, Any]:
     require_covered(config)
     geometry, material, growth = config.geometry, config.material, config.growth
     return {
-        "inner_radius": geometry.hole_fraction * geometry.mean_radius,
+        "inner_radius": geometry.hole_share * geometry.mean_radius,
         "outer_radius": geometry.mean_radius,
         "cortical_thickness": geometry.cortical_thickness,
         "young_modulus": material.young_modulus,

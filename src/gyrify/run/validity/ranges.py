@@ -247,7 +247,7 @@ RANGES: Final[tuple[Range, ...]] = (
         2.0,
         "",
         "1.6 in a public mesh of BrainGrowth, which is not converged",
-        "Lower mesh.edge_length.",
+        "Lower mesh.edge_length, or raise mesh.refine.",
         lambda config: _spacing_over_thickness(config) if config.geometry.n_dim == 3 else None,
     ),
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from gyrify.config.body_sections import FROM_FILES
 from gyrify.run.validity.expected import expected_onset
 from gyrify.run.validity.ranges import contour_spacing
 
@@ -25,11 +26,13 @@ def resolution_in_space(config: Config) -> list[str]:
     other = ""
     if element != "quadratic":
         other = f' or mesh.element = "quadratic" with {_rounded(length / EDGES_PER_WAVE["quadratic"])}'
+    finer = f"mesh.edge_length = {_rounded(length / needed)}{other}"
+    if config.geometry.shape in FROM_FILES:
+        finer = f"mesh.refine = {config.mesh.refine + 1}"
     return [
         f"The mesh is coarse beside the folds: exact theory ({expected.theory}) expects a wave of "
         f"{length:.3g} mm, which {length / edge:.2g} edges of {edge:.3g} mm make up ({needed:g} are needed "
-        f"for an onset that is late by 5 %): folds come late, and wider. Set mesh.edge_length = "
-        f"{_rounded(length / needed)}{other}."
+        f"for an onset that is late by 5 %): folds come late, and wider. Set {finer}."
     ]
 
 

@@ -1,0 +1,1 @@
+"""Files that describe a body: found, read, checked and repaired."""

@@ -1,0 +1,27 @@
+"""What was repaired of a surface from a file, and where its cortex is thinner than asked for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from gyrify.config.body_sections import FROM_FILES
+
+if TYPE_CHECKING:
+    from gyrify.config import Config
+
+
+def surface_notes(config: Config) -> list[str]:
+    """Warn of repairs, and of what the mesh of a surface could not do."""
+    geometry = config.geometry
+    if geometry.shape not in FROM_FILES:
+        return []
+    from gyrify.model.kept_mesh import mesh_inside
+
+    found = []
+    for key, surface in (("file", geometry.surface), ("hole_file", geometry.hole_surface)):
+        if surface is not None and surface.notes:
+            found.append(
+                f"The surface of geometry.{key} was repaired: {'; '.join(surface.notes)}. Look whether it is "
+                "what you mean."
+            )
+    return [*found, *mesh_inside(config).notes]
