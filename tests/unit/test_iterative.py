@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from gyrify.energy.symmetric_product import invert_positive
 from gyrify.errors import SolveError
 from gyrify.solve.iterative.blocks import BlockMatrix, Nodes
 from gyrify.solve.iterative.conjugate import conjugate_gradients
@@ -186,3 +187,15 @@ def test_a_singular_system_is_told() -> None:
     solver, data = solver_of(A)
     with pytest.raises(SolveError, match="close to singular"):
         solver.factorise(data).solve(null)
+
+
+def test_blocks_that_are_positive_are_inverted_and_the_others_left(rng: np.random.Generator) -> None:
+    halves = rng.standard_normal((200, 3, 3))
+    blocks = halves @ halves.transpose(0, 2, 1) + 0.1 * np.eye(3)
+    blocks[::7] -= 2.0 * np.eye(3)
+    blocks[1] = np.diag([1.0, 1.0, 0.0])
+    inverse = np.full_like(blocks, np.nan)
+    is_positive = invert_positive(blocks, inverse)
+    assert np.array_equal(is_positive, np.linalg.eigvalsh(blocks).min(axis=1) > 0.0)
+    assert inverse[is_positive] == pytest.approx(np.linalg.inv(blocks[is_positive]), rel=1e-9, abs=1e-9)
+    assert np.isnan(inverse[~is_positive]).all()

@@ -93,7 +93,7 @@ class SurfaceClosing:
     def _read_exactly(self, origin: FloatArray, distance: FloatArray, points: FloatArray) -> None:
         """Replace distances next to the radius by those to points."""
         near = np.argwhere(np.abs(distance - self.radius) < _BAND * self.spacing)
-        exact, _ = cKDTree(points).query(origin + self.spacing * near)
+        exact, _ = _tree(points).query(origin + self.spacing * near)
         distance[tuple(near.T)] = exact
 
     @cached_property
@@ -119,8 +119,16 @@ class SurfaceClosing:
 
     def depth(self, points: FloatArray) -> FloatArray:
         """(n,) depth of points of the solid below the closing's outline [mm], at least 0."""
-        distance, _ = cKDTree(self._offset_points).query(points)
+        distance, _ = _tree(self._offset_points).query(points)
         return np.asarray(np.maximum(distance - self.radius, 0.0))
+
+
+def _tree(points: FloatArray) -> cKDTree:
+    """Search tree of points that lie dense on a surface, for places that are about as far from many of them.
+
+    Leaves of a tree that is not balanced are cubes, which leave out more: a third of the time.
+    """
+    return cKDTree(points, leafsize=32, compact_nodes=False, balanced_tree=False)
 
 
 def _share(x: FloatArray, period: float, width: float) -> FloatArray:

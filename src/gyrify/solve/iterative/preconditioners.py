@@ -8,8 +8,9 @@ from typing import Any, Final
 
 import numpy as np
 
+from gyrify.energy.symmetric_product import invert_positive, multiply_blocks
 from gyrify.errors import SolveError
-from gyrify.solve.iterative.blocks import AXES, BlockMatrix
+from gyrify.solve.iterative.blocks import BlockMatrix
 from gyrify.solve.types import FloatArray
 
 Preconditioner = Callable[[FloatArray], FloatArray]
@@ -29,11 +30,19 @@ def block_diagonal(matrix: BlockMatrix) -> Preconditioner:
     SolveError
         If a block is singular.
     """
-    values, vectors = np.linalg.eigh(matrix.diagonal)
-    if not np.abs(values).min() > 0.0:
+    inverse = np.empty_like(matrix.diagonal)
+    rest = np.flatnonzero(~invert_positive(matrix.diagonal, inverse))
+    values, vectors = np.linalg.eigh(matrix.diagonal[rest])
+    if not np.abs(values).min(initial=1.0) > 0.0:
         raise SolveError("A point of the mesh has no stiffness.", "Check that all stiffnesses are positive.")
-    inverse = np.einsum("nij,nj,nkj->nik", vectors, 1.0 / np.abs(values), vectors)
-    return lambda x: np.einsum("nij,nj->ni", inverse, x.reshape(-1, AXES)).ravel()
+    inverse[rest] = np.einsum("nij,nj,nkj->nik", vectors, 1.0 / np.abs(values), vectors)
+
+    def apply(x: FloatArray) -> FloatArray:
+        product = np.empty_like(x)
+        multiply_blocks(inverse, x, product)
+        return product
+
+    return apply
 
 
 def strongest(matrix: BlockMatrix) -> Preconditioner:
