@@ -246,9 +246,9 @@ class MeshSettings(Section):
     )
     n_cortex_layers: int = setting(
         6,
-        "Layers in the cortex, fewer than n_layers.",
+        "Layers in the cortex, fewer than n_layers; at least 2 in the plane.",
         source=f"{PAPER}, Results (at least six)",
-        ge=2,
+        ge=1,
         le=511,
     )
     grading: Literal["geometric", "uniform"] = setting(

@@ -36,6 +36,11 @@ def faults(config: Config) -> list[str]:
 
 def _layers(config: Config) -> str:
     mesh = config.mesh
+    if mesh.n_cortex_layers == 1 and config.geometry.n_dim == 2:
+        return (
+            "mesh.n_cortex_layers = 1 is not allowed in the plane: it must be from 2 to 511, for a layer that "
+            "can bend. Try mesh.n_cortex_layers = 2."
+        )
     if mesh.n_cortex_layers < mesh.n_layers or config.geometry.shape in FROM_FILES:
         return ""
     return (
