@@ -38,7 +38,7 @@ def _layers(config: Config) -> str:
     mesh = config.mesh
     if mesh.n_cortex_layers == 1 and config.geometry.n_dim == 2:
         return (
-            "mesh.n_cortex_layers = 1 is not allowed in the plane: it must be from 2 to 511, for a layer that "
+            "mesh.n_cortex_layers = 1 is not allowed in the plane: it must be at least 2, so that the layer "
             "can bend. Try mesh.n_cortex_layers = 2."
         )
     if mesh.n_cortex_layers < mesh.n_layers or config.geometry.shape in FROM_FILES:
