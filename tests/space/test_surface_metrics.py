@@ -251,3 +251,13 @@ def test_measures_are_told_by_their_names() -> None:
     assert found.n_dim == 3
     assert "GI by area" in repr(found)
     assert "contour_length_mm" not in nested
+
+
+def test_triangles_about_a_point_are_no_other_side_of_a_sulcus() -> None:
+    """At the bottom of a sharp pit edges face the walls that they end at, which are no gap."""
+    x, faces = ball(8)
+    x[0] *= 0.2
+    rim = np.setdiff1d(faces[np.any(faces == 0, axis=1)], 0)
+    # between opposite walls at half the depth, which edges to the bottom would measure
+    half_way = 0.5 * np.linalg.norm(x[rim] - x[rim[0]], axis=1).max()
+    assert smallest_gap(x, faces) > half_way

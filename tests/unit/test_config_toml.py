@@ -137,6 +137,14 @@ def test_reference_slice_is_frozen() -> None:
     assert Config.preset("reference-slice").config_hash == REFERENCE_HASH
 
 
+def test_reference_brain_is_frozen() -> None:
+    brain = Config.preset("reference-brain")
+    assert brain.config_hash == "e710c39234fd3e76e305502751422350231d4b6ad856f845d78933157f8fc67d"
+    assert brain.growth.rate * brain.growth.duration == pytest.approx(1.829)
+    nu = brain.material.poisson_ratio
+    assert 2.0 * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu)) == pytest.approx(5.0)  # bulk over shear modulus
+
+
 @pytest.mark.parametrize("name", preset_names())
 def test_presets_state_every_value_and_explain_themselves(name: str) -> None:
     about = preset_about(name)

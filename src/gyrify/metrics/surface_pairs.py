@@ -100,15 +100,16 @@ def contains(corners: FloatArray, point: FloatArray) -> bool:
 def smallest_gap(points: FloatArray, faces: IntArray) -> float:
     """Smallest way across a sulcus: outwards from a point of the surface to a triangle that faces it [mm].
 
-    Looked for from the points and the middles of the edges; infinite where nothing faces anything within a
-    tenth of the body's size.
+    Looked for from the points and the middles of the edges, to triangles that have no point in common with
+    them; infinite where nothing faces anything within a tenth of the body's size.
     """
     corners = points[faces]
     edges = np.unique(
         np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], 2).reshape(-1, 2), axis=1), axis=0
     )
     normals = vertex_normals(points.shape[0], faces, corners)
-    starts = np.concatenate([points, points[edges].mean(axis=1)])
+    owners = np.concatenate([np.repeat(np.arange(points.shape[0])[:, None], 2, axis=1), edges])
+    starts = points[owners].mean(axis=1)
     directions = np.concatenate([normals, normals[edges].sum(axis=1)])
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     facets = face_vectors(corners)
@@ -125,8 +126,10 @@ def smallest_gap(points: FloatArray, faces: IntArray) -> float:
         for starts_tree, tree, own, other in groups:
             near = starts_tree.sparse_distance_matrix(tree, reach, output_type="ndarray")
             start, face = own[near["i"]], other[near["j"]]
-            facing = np.einsum("ni,ni->n", directions[start], facets[face]) < _FACING
-            start, face = start[facing], face[facing]
+            kept = np.einsum("ni,ni->n", directions[start], facets[face]) < _FACING
+            # at the bottom of a sharp sulcus a point faces triangles about itself, at no distance
+            kept &= ~np.any(owners[start][:, :, None] == faces[face][:, None, :], axis=(1, 2))
+            start, face = start[kept], face[kept]
             across = closest_points(starts[start], corners[face]) - starts[start]
             outwards = np.einsum("ni,ni->n", across, directions[start]) > 0.0
             found = min(found, float(np.linalg.norm(across[outwards], axis=1).min(initial=np.inf)))
