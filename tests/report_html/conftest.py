@@ -129,6 +129,11 @@ class Browser:
         opened.wait(wait)
         return opened
 
+    def close(self) -> None:
+        """Close what was opened: pages that are left open go on drawing."""
+        for context in self._contexts:
+            context.close()
+
 
 @pytest.fixture(scope="session")
 def chromium() -> Iterator[Any]:
@@ -144,9 +149,11 @@ def chromium() -> Iterator[Any]:
 
 
 @pytest.fixture
-def browser(chromium: Any, tmp_path: Path) -> Browser:
+def browser(chromium: Any, tmp_path: Path) -> Iterator[Browser]:
     """Opens reports from a folder of the test's own."""
-    return Browser(chromium, tmp_path)
+    found = Browser(chromium, tmp_path)
+    yield found
+    found.close()
 
 
 @pytest.fixture(scope="session")
