@@ -151,7 +151,7 @@ FILES = [
     Case("digits", "a number of 5000 digits", ("too many digits",), "seed = " + "9" * 5000, shown="`seed = 999…` (5000 digits)"),
 ]  # fmt: skip
 COMMAND_LINE = [
-    Case("preset", "a preset that does not exist", ("available are converged-slice, reference-slice, wang2019", "Did you mean wang2019?"), args=(*CHECK, "--preset", "wang2018")),
+    Case("preset", "a preset that does not exist", ("available are converged-slice, reference-brain, reference-slice, wang2019", "Did you mean wang2019?"), args=(*CHECK, "--preset", "wang2018")),
     Case("preset-in-file", "a preset in a file that does not exist", ("does not exist",), 'preset = "../../secret"'),
     Case("option-value", "a bad value of an option", ("growth.ratio = -3 ",), args=(*CHECK, "--growth-ratio", "-3")),
     Case("slivers", "layers far too thin for their columns", ("quality 0.011", "too wide", "Try mesh.n_around = "), args=(*CHECK, "--thickness", "0.05")),

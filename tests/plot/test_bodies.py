@@ -16,11 +16,13 @@ import gyrify
 from gyrify.config import Config
 from gyrify.errors import ConfigError
 from gyrify.mesh.boundary import boundary_faces, straight_cells
+from gyrify.model.slice import build_mesh
 from gyrify.report.animate import frames_of
 from gyrify.report.animate_body import BodyScene
 from gyrify.report.plot.field_colours import PAINTS, common_scale
 from gyrify.report.plot.mode import mode_row
 from gyrify.report.plot.shown import Shown
+from gyrify.report.plot.space_figure import space_figure
 from gyrify.report.surface_drawing import VIEWS, DrawnBody, cut_cells
 from gyrify.run.simulation import simulate
 from gyrify.solve.stability import Onset
@@ -249,3 +251,21 @@ def test_the_onset_in_space_is_read_back_with_three_components(tmp_path) -> None
     found = history.onset
     assert np.array_equal(found.displacement, state)
     assert np.array_equal(found.vector, mode)
+
+
+def test_panels_of_a_body_that_is_wider_than_long_do_not_overlap() -> None:
+    mesh = build_mesh(
+        Config().with_overrides(
+            {
+                "geometry.shape": "ellipsoid", "geometry.semi_axes": (12.0, 20.0, 14.0),
+                "geometry.hole_fraction": 0.0, "mesh.edge_length": 6.0, "mesh.n_layers": 4,
+                "mesh.n_cortex_layers": 2,
+            }
+        )
+    )  # fmt: skip
+    figure = space_figure(mesh, mesh.points)
+    boxes = [axes.get_position() for axes in figure.axes[:4]]
+    for k, one in enumerate(boxes):
+        for other in boxes[k + 1 :]:
+            apart = one.x1 <= other.x0 or other.x1 <= one.x0 or one.y1 <= other.y0 or other.y1 <= one.y0
+            assert apart

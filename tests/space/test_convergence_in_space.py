@@ -13,8 +13,11 @@ from solids import BALL, config
 
 from gyrify import History
 from gyrify.cli import main
+from gyrify.config import Config
 from gyrify.convergence import Convergence, converge
 from gyrify.convergence.measured import METRICS, metrics
+from gyrify.convergence.plan import plan
+from gyrify.errors import ConfigError
 from gyrify.report.convergence_figures import PANELS, write_pictures
 from gyrify.run.validity.converged import command
 from gyrify.run.validity.exact_bodies import sphere_of
@@ -92,3 +95,10 @@ def test_the_command_takes_it_up_and_prints_it(study: tuple[Convergence, Path], 
     assert command(GROWING) == "gyrify converge config.toml --of mesh --levels 2"
     finest = GROWING.replace(**{"mesh.refine": 4, "mesh.edge_length": 40.0})
     assert command(finest).endswith("--levels 2 --set mesh.refine=3")
+
+
+def test_too_many_levels_of_a_brain_are_refused_with_a_number_that_is_not() -> None:
+    brain = Config.preset("reference-brain")
+    with pytest.raises(ConfigError, match=r"Level 3 of 3 is not allowed.*--levels 2"):
+        plan(brain, ["mesh"], 3)
+    assert len(plan(brain, ["mesh"], 2)["mesh"]) == 2

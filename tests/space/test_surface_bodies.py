@@ -14,6 +14,7 @@ from gyrify.config import Config
 from gyrify.errors import ConfigError, MeshError
 from gyrify.mesh import GREY, WHITE, Mesh
 from gyrify.mesh.cell_clusters import edge_clusters
+from gyrify.mesh.filling import _require_full
 from gyrify.mesh.offset_surface import offset_surface
 from gyrify.mesh.quality import tetrahedron_quality
 from gyrify.metrics.surface_pairs import contains, crosses_itself, crossings
@@ -229,4 +230,31 @@ def test_onset_is_expected_of_a_sphere_alone(files: Path, tmp_path: Path) -> Non
     assert ball.growth_time == pytest.approx(of_shape.growth_time, rel=0.02)
     brain = expected_onset(config(files / "brain.off"))
     assert brain.growth_time is None
-    assert "surface of geometry.file is none" in brain.not_covered
+    assert "surface of geometry.file has another shape" in brain.not_covered
+
+
+def test_every_part_of_a_hole_must_lie_inside(files: Path, tmp_path: Path) -> None:
+    points, triangles = ellipsoid(3, (12.0, 10.0, 8.0))
+    both = np.concatenate([points, points + np.array([60.0, 0.0, 0.0])])
+    hole = off(tmp_path / "two.off", both, np.concatenate([triangles, triangles + len(points)]))
+    with pytest.raises(MeshError, match=r"hole is not inside the white matter.* at \((4|5|6|7)"):
+        build_mesh(config(files / "brain.off", **{"geometry.hole_file": str(hole)}))
+
+
+def test_a_part_that_is_left_empty_is_no_mesh() -> None:
+    """Netgen may give up without an error."""
+    points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    corners = points[[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]]
+    _require_full(points, np.array([[0, 1, 2, 3]]), corners)
+    with pytest.raises(MeshError, match=r"filled 0 of the 0\.1667 mm³"):
+        _require_full(points, np.empty((0, 4), dtype=np.int64), corners)
+
+
+def test_an_interface_on_the_surface_is_refused_with_a_place(files: Path, tmp_path: Path) -> None:
+    outer, triangles = ellipsoid(4, AXES)
+    inner, _ = ellipsoid(4, (31.0, 25.0, 20.0))
+    inner[7] = outer[7]
+    path = off(tmp_path / "inner.off", inner, triangles)
+    given = config(files / "brain.off", **{"geometry.interface_file": str(path)})
+    with pytest.raises(ConfigError, match="coincide at 1 points, first at"):
+        build_mesh(given)

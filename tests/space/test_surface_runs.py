@@ -16,7 +16,7 @@ from gyrify.errors import ConfigError, HistoryError, MeshError
 from gyrify.metrics.surface_pairs import crosses_itself, smallest_gap
 from gyrify.model import kept_mesh
 from gyrify.report.outputs import write_outputs
-from gyrify.run.simulation import resume, simulate
+from gyrify.run.simulation import resume, simulate, stored_run
 from gyrify.store import History
 from gyrify.store.export import export
 from gyrify.verify.recheck import verify
@@ -150,3 +150,15 @@ def test_two_bodies_in_one_file_meet(tmp_path: Path) -> None:
     assert moved[~left, 0].mean() - moved[left, 0].mean() > 20.4 + 1.0
     assert 0.0 < smallest_gap(moved, faces) < 0.3
     assert not crosses_itself(moved, faces)
+
+
+def test_a_stored_run_keeps_its_own_copies(folder: Path, tmp_path: Path) -> None:
+    shutil.copytree(folder, tmp_path / "run")
+    shutil.copy(folder / "inputs" / "surface.stl", tmp_path / "copy.stl")
+    other = {"geometry.file": str(tmp_path / "copy.stl")}
+    with (
+        pytest.raises(ConfigError, match="keeps its configuration"),
+        stored_run(tmp_path / "run", other),
+    ):
+        pass
+    assert History.load(tmp_path / "run").result_hash

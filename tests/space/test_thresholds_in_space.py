@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from solids import BALL, PATCH, config
+from written_surfaces import config as surface
+from written_surfaces import ellipsoid, off
 
 from gyrify.config import Config
+from gyrify.errors import ConfigError
 from gyrify.model.meshing import build_mesh
 from gyrify.run.validity.exact_bodies import round_body
 from gyrify.run.validity.expected import expected_onset
@@ -142,3 +146,17 @@ def test_folds_are_seen_by_the_index_of_areas() -> None:
     assert 110.0 < found.critical_value < 240.0
     assert found.scan[0].gi == 1.0
     assert found.scan[-1].gi > 1.02  # type: ignore[operator]
+
+
+def test_thicknesses_of_a_surface_are_no_branch(tmp_path: Path) -> None:
+    given = surface(off(tmp_path / "a.off", *ellipsoid(2)))
+    with pytest.raises(ConfigError, match="each thickness has another mesh"):
+        critical_growth(given, "geometry.cortical_thickness", range=(2.0, 4.0), points=3)
+
+
+def test_two_surfaces_have_no_smooth_branch(tmp_path: Path) -> None:
+    points, triangles = ellipsoid(2)
+    both = np.concatenate([points, points + np.array([90.0, 0.0, 0.0])])
+    path = off(tmp_path / "two.off", both, np.concatenate([triangles, triangles + len(points)]))
+    with pytest.raises(ConfigError, match="the 2 closed surfaces"):
+        critical_growth(surface(path), "growth.ratio", range=(2.0, 4.0), points=3)

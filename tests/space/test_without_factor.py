@@ -17,12 +17,14 @@ from gyrify.model import solver_choice
 from gyrify.model.slice import Slice
 from gyrify.model.solver_choice import factor_memory, machine_memory
 from gyrify.run.onset.onset_search import OnsetSearch
-from gyrify.run.simulation import stored_run
+from gyrify.run.running import Progress
+from gyrify.run.simulation import resume, stored_run
 from gyrify.run.summary import summarise
 from gyrify.solve.iterative.inexact import InexactHessian
 from gyrify.solve.iterative.krylov import ConjugateGradients
 from gyrify.solve.problem import State
 from gyrify.solve.quasistatic import grow
+from gyrify.store import History
 
 CG = {"solver.linear_solver": "cg"}
 SMALL = {"solver.increments": 3, "mesh.edge_length": 14.0, "mesh.n_layers": 4}
@@ -192,3 +194,19 @@ def test_the_default_is_not_in_the_hash() -> None:
     base = config(BALL)
     assert base.config_hash == base.replace(**{"solver.linear_solver": "auto"}).config_hash
     assert base.config_hash != base.replace(**CG).config_hash
+
+
+def test_a_run_resumes_to_the_same_bytes(tmp_path: Path) -> None:
+    class Enough(Exception):
+        pass
+
+    def stop(progress: Progress) -> None:
+        if progress.state.index == 4:
+            raise Enough
+
+    given = config(BRAIN, **CG, **{"solver.increments": 7, "growth.duration": 250.0})
+    whole = simulate(given, tmp_path / "whole")
+    with pytest.raises(Enough):
+        simulate(given, tmp_path / "cut", observers=[stop])
+    assert len(History.load(tmp_path / "cut")) < len(whole)
+    assert resume(tmp_path / "cut").result_hash == whole.result_hash

@@ -42,7 +42,7 @@ OUTSIDE = [
         "exp",
     ),
     ({"growth.ratio": 0.2}, "growth.ratio = 0.2", "white matter grows faster"),
-    ({"growth.ratio": 1e4}, "growth.ratio = 10000", "1 to 360"),
+    ({"growth.ratio": 900.0}, "growth.ratio = 900", "1 to 360"),
     ({"dissipation.number": 300.0}, "dissipation.number = 300", "Lower it"),
     (
         {"geometry.cortical_thickness": 0.5, "mesh.n_around": 72},
@@ -80,7 +80,7 @@ def test_every_range_is_left_by_some_case() -> None:
 def test_presets_and_the_scans_of_the_paper_are_not_warned_of(name: str) -> None:
     base = Config.preset(name)
     assert _unusual(base) == []
-    for case in all_cases():
+    for case in all_cases() if base.geometry.n_dim == 2 else ():  # its cases are slices
         assert _unusual(base.with_overrides(case.overrides)) == [], str(case)
 
 

@@ -13,7 +13,19 @@ from importlib import metadata
 from pathlib import Path
 from typing import Final
 
-LIBRARIES = ("gyrify", "numpy", "scipy", "numba", "ipctk", "shapely", "mkl", "pyamg")
+LIBRARIES = (
+    "gyrify",
+    "numpy",
+    "scipy",
+    "numba",
+    "ipctk",
+    "shapely",
+    "mkl",
+    "pyamg",
+    "netgen-mesher",
+    "trimesh",
+    "nibabel",
+)
 # What the result of a run is computed with: packages of gyrify.
 NUMERICS: Final = ("config", "physics", "mesh", "energy", "model", "solve", "run", "theory", "metrics")
 

@@ -26,7 +26,10 @@ def edge_length(config: Config) -> float:
 
 def finer(config: Config) -> str:
     """What makes the mesh of a body finer along its surface, as advice."""
-    return "raise mesh.n_around" if config.geometry.n_dim == 2 else "lower mesh.edge_length"
+    if config.geometry.n_dim == 2:
+        return "raise mesh.n_around"
+    further = f"set mesh.refine = {config.mesh.refine + 1}"
+    return further if config.geometry.shape in FROM_FILES else f"lower mesh.edge_length, or {further}"
 
 
 def n_cells(config: Config) -> float:

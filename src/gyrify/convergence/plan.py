@@ -46,10 +46,21 @@ def plan(config: Config, subjects: Sequence[str], levels: int) -> dict[Subject, 
     known = [_known(subject) for subject in subjects]
     for subject in known:
         _require_meaning(config, subject, levels)
-    return {
-        subject: tuple(_refined(config, subject, 2**level) for level in range(levels))
-        for subject in dict.fromkeys(known)
-    }
+    return {subject: _family(config, subject, levels) for subject in dict.fromkeys(known)}
+
+
+def _family(config: Config, subject: Subject, levels: int) -> tuple[Config, ...]:
+    """Configurations of all levels; where a finer one is out of bounds, the advice is fewer."""
+    found: list[Config] = []
+    for level in range(levels):
+        try:
+            found.append(_refined(config, subject, 2**level))
+        except ConfigError as fault:
+            advice = f"Ask for --levels {level}." if level >= 2 else "Start from a coarser mesh."
+            raise ConfigError(
+                f"Level {level + 1} of {levels} is not allowed: {fault.message}", advice
+            ) from None
+    return tuple(found)
 
 
 def resolution(config: Config, subject: Subject) -> float:

@@ -13,6 +13,8 @@ from gyrify.mesh.mesh import FloatArray, IntArray
 # Rounds of optimisation, and how quickly cells grow with the distance from the surfaces (0 not, 1 at once).
 _ROUNDS: Final = 5
 GRADING: Final = 0.4
+# Part of the volume that rounding may leave between the cells and the surfaces.
+_EMPTY: Final = 1e-6
 
 
 def filled(points: FloatArray, triangles: IntArray, largest: float) -> tuple[FloatArray, IntArray]:
@@ -59,4 +61,18 @@ def filled(points: FloatArray, triangles: IntArray, largest: float) -> tuple[Flo
     if every.shape[0] < n or not np.array_equal(every[:n], points):
         raise MeshError("Netgen moved points of the interface.", "Smooth the surface.")
     cells = np.array(mesh.Elements3D().NumPy()["nodes"][:, :4], dtype=np.int64) - 1
-    return every[n:], np.ascontiguousarray(cells[:, [0, 1, 3, 2]])
+    cells = np.ascontiguousarray(cells[:, [0, 1, 3, 2]])
+    _require_full(every, cells, points[triangles])
+    return every[n:], cells
+
+
+def _require_full(points: FloatArray, cells: IntArray, corners: FloatArray) -> None:
+    """Netgen may give up without a word, and leave a part empty."""
+    inside = float(np.linalg.det(corners).sum()) / 6.0
+    edges = points[cells[:, 1:]] - points[cells[:, :1]] if cells.size else np.empty((0, 3, 3))
+    found = float(np.linalg.det(edges).sum()) / 6.0
+    if not abs(found - inside) <= _EMPTY * abs(inside):
+        raise MeshError(
+            f"Netgen filled {found:.4g} of the {inside:.4g} mm³ of white matter, and gave up.",
+            "Smooth the surface, lower geometry.cortical_thickness, or give geometry.interface_file.",
+        )

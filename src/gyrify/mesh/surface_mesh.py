@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from gyrify.base.places import place
@@ -169,8 +171,13 @@ def _require_inside(inner: FloatArray, triangles: IntArray, hole_points: FloatAr
     n = inner.shape[0]
     both = np.concatenate([inner, hole_points])
     edges, hit = crossings(both, np.concatenate([triangles, hole + n]))
-    where = both[edges[0]].mean(axis=0) if hit.size else hole_points[0]
-    if hit.size or not contains(inner[triangles], hole_points[0]):
+    sides = (hole.ravel(), np.roll(hole, 1, axis=1).ravel())
+    joined = csr_array((np.ones(hole.size), sides), shape=(hole_points.shape[0],) * 2)
+    _, part = connected_components(joined, directed=False)
+    _, firsts = np.unique(part, return_index=True)
+    outside = [k for k in firsts if not contains(inner[triangles], hole_points[k])]
+    where = both[edges[0]].mean(axis=0) if hit.size else hole_points[(outside or [0])[0]]
+    if hit.size or outside:
         raise MeshError(
             f"The hole is not inside the white matter: it meets itself or the interface at {place(where)}.",
             "Give another geometry.hole_file, or a smaller geometry.cortical_thickness.",

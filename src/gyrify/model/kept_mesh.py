@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 
 from gyrify.config import Config
-from gyrify.config.inputs.named_files import FOLDER, MESH
+from gyrify.config.inputs.named_files import FILE_KEYS, FOLDER, MESH
 from gyrify.errors import MeshError
 from gyrify.mesh import Mesh
 from gyrify.mesh.shapes import SurfaceBody, shape_of
@@ -40,7 +40,7 @@ _FORMAT: Final = 1
 _MOST_BYTES: Final = 4_000_000_000
 # Meshes at hand: that of a run, and that of the smooth body without jitter is the same.
 _MOST_KEPT: Final = 2
-_made: OrderedDict[str, Mesh] = OrderedDict()
+_made: OrderedDict[tuple[object, ...], Mesh] = OrderedDict()
 
 
 def mesh_inside(config: Config) -> Mesh:
@@ -51,15 +51,24 @@ def mesh_inside(config: Config) -> Mesh:
     MeshError
         If the body cannot be meshed, or what is beside its file is damaged.
     """
-    key = _key(config)
-    if key not in _made:
-        beside = Path(config.geometry.file).with_name(MESH)
-        mesh = _read(beside, key) if beside.parent.name == FOLDER and beside.is_file() else None
-        _made[key] = _new(config) if mesh is None else mesh
+    key, beside = _key(config), _beside(Path(config.geometry.file))
+    about = beside.stat() if beside else None
+    # the mesh of one run is not that of another one, which another Netgen may have made
+    place = (key, str(beside), about.st_mtime_ns, about.st_size) if about else (key,)
+    if place not in _made:
+        mesh = _read(beside, key) if beside else None
+        _made[place] = _new(config) if mesh is None else mesh
         while len(_made) > _MOST_KEPT:
             _made.popitem(last=False)
-    _made.move_to_end(key)
-    return _made[key]
+    _made.move_to_end(place)
+    return _made[place]
+
+
+def _beside(surface: Path) -> Path | None:
+    """The mesh beside a run's own copy of a surface, if there is one."""
+    mesh = surface.with_name(MESH)
+    is_copy = mesh.parent.name == FOLDER and surface.stem == FILE_KEYS["file"]
+    return mesh if is_copy and mesh.is_file() else None
 
 
 def mesh_bytes(config: Config) -> bytes:

@@ -17,7 +17,7 @@ from gyrify.report.plot.field_colours import colour_bar, common_scale
 from gyrify.report.plot.shown import Shown
 from gyrify.report.plot.space_figure import in_view, panel, tissue_patches
 from gyrify.report.plot.style import new_figure, write
-from gyrify.report.surface_drawing import DrawnBody, Painted, paint
+from gyrify.report.surface_drawing import DrawnBody, Painted, paint, section_caption
 from gyrify.store.fields import fields
 
 _WIDTH_MM: Final = 120.0
@@ -60,7 +60,7 @@ class BodyScene:
         left, self.axes = MARGIN_MM, []
         for name, frame in frames.items():
             self.axes.append(panel(self.figure, (left, foot, tall), scale, frame))
-            caption = name if name == _VIEW else f"section at x = {self._place:.3g} mm".replace("-", "−")
+            caption = name if name == _VIEW else section_caption(self._place, float(high[0] - low[0]))
             write(self.figure, left, foot + tall + LINE_MM, caption, fontsize=7)
             left += scale * float(frame[1][0] - frame[0][0]) + _GAP_MM
         self.size = fit(self.figure, width)

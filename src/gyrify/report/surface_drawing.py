@@ -37,6 +37,13 @@ _AMBIENT_ON_FIELDS: Final = 0.62
 _SHADE: Final = 0.55
 
 
+def section_caption(place: float, width: float) -> str:
+    """Caption of a section across x at a place [mm], to a thousandth of the body's width [mm]."""
+    step = 10.0 ** np.floor(np.log10(1e-3 * width))
+    shown = round(place / step) * step
+    return f"section at x = {shown + 0.0:.3g} mm".replace("-", "−")
+
+
 @dataclass(frozen=True, eq=False)
 class DrawnBody:
     """A state of a body in space.

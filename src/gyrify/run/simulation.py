@@ -10,6 +10,7 @@ from pathlib import Path
 from gyrify.base.arguments import Pathlike, as_path
 from gyrify.base.versions import versions
 from gyrify.config import Config, ConfigLike, as_config
+from gyrify.config.inputs.named_files import FILE_KEYS
 from gyrify.errors import ConfigError
 from gyrify.model.kept_mesh import mesh_digest
 from gyrify.model.slice import Slice
@@ -215,7 +216,9 @@ def resume(
 
 def _changed(config: Config, overrides: Mapping[str, object]) -> Config:
     changed = config.with_overrides(overrides)
-    if changed.config_hash != config.config_hash:
+    # paths are no part of the hash, and those of a stored run are its own copies
+    moved = any(getattr(changed.geometry, key) != getattr(config.geometry, key) for key in FILE_KEYS)
+    if changed.config_hash != config.config_hash or moved:
         raise ConfigError(
             "A stored run keeps its configuration: only values in limits and output can change.",
             "Begin another run with `gyrify run`.",

@@ -18,16 +18,18 @@ class Result(Enum):
     )
     LINE_SEARCH = (
         "no step along the Newton direction lowers the energy",
-        "Raise solver.increments or mesh.n_around, or use a larger solver.tolerance.",
+        "Raise solver.increments or mesh.n_around (in space lower mesh.edge_length), or use a larger "
+        "solver.tolerance.",
     )
     BLOCKED = (
         "no step is possible: the contour would cross itself",
-        "Raise mesh.n_around, or contact.activation_fraction.",
+        "Raise mesh.n_around (in space lower mesh.edge_length), or contact.activation_fraction.",
     )
     INVERTING = (
         "no step is possible: a cell would be inverted, in a part of it at least",
         'With mesh.element = "quadratic" set mesh.inversion_resistance = 0.1: nothing else resists that '
-        "between integration points. With another element raise mesh.n_around or solver.increments.",
+        'between integration points (in space take mesh.element = "mean_dilatation"). With another element '
+        "raise mesh.n_around (in space lower mesh.edge_length) or solver.increments.",
     )
     INADMISSIBLE = (
         "a cell of the state that the increment starts from is inverted",

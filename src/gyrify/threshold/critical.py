@@ -10,7 +10,7 @@ from itertools import pairwise
 from gyrify.base.arguments import real_number
 from gyrify.base.pool import MAX_WORKERS
 from gyrify.config import Config, ConfigLike, as_config
-from gyrify.config.body_sections import PERIODIC
+from gyrify.config.body_sections import FROM_FILES, PERIODIC
 from gyrify.config.space_checks import finer
 from gyrify.errors import ConfigError
 from gyrify.run.limits import Watch
@@ -25,7 +25,6 @@ from gyrify.threshold.theory_value import differences, expected_crossings
 from gyrify.threshold.visible_scan import VisibleScan
 
 # Relative tolerance of a crossing, by definition.
-_FINER = "Repeat it with mesh.refine = 1, and see how far it moves."
 TOLERANCE: dict[str, float] = {"stability": 1e-6, "visible": 0.01}
 
 
@@ -84,9 +83,30 @@ def critical_growth(
     level = real_number("level", level)
     tolerance = None if tolerance is None else real_number("tolerance", tolerance)
     _check(definition, level, tolerance, workers)
+    if definition == "stability":
+        _require_one_branch(config, parameter)
     values = scan_values(config, parameter, range, points, definition == "visible")
     found = _find(config, parameter, definition, values, level, tolerance or TOLERANCE[definition], workers)
     return replace(found, wall_s=time.perf_counter() - begun)
+
+
+def _require_one_branch(config: Config, parameter: str) -> None:
+    """Refuse what has no smooth branch: another mesh for each value, bodies that nothing holds."""
+    if config.geometry.shape not in FROM_FILES:
+        return
+    advice = 'Set definition = "visible".'
+    if parameter == "geometry.cortical_thickness":
+        raise ConfigError(
+            f'{parameter} is not allowed with geometry.shape = "{config.geometry.shape}" and definition = '
+            '"stability": each thickness has another mesh, and states of one are none of another.',
+            advice,
+        )
+    if (n := config.geometry.surface.n_parts) > 1:
+        raise ConfigError(
+            f'definition = "stability" is not allowed with the {n} closed surfaces of geometry.file: '
+            "without drag nothing holds one beside the other.",
+            advice,
+        )
 
 
 def _find(
@@ -112,7 +132,7 @@ def _find(
         if _is_beyond(below, level) != _is_beyond(above, level)
     ]
     ends = scan.ends(scanned) if isinstance(scan, StabilityScan) else []
-    crossings = (*changes, *ends)
+    crossings = _ordered((*changes, *ends))
     main, edges = main_crossing(crossings), _edges(parameter, scanned, crossings, level, tolerance)
     unsolved = _unsolved(values, scanned)
     if visible and parameter == "growth.time":  # one run, read at its own increments
@@ -212,7 +232,8 @@ def _warnings(
             f"Scan another range, or {finer(config)}."
         )
     found += _coarse_beside(config, crossings)
-    advice = "Change the element first." if locking(config) else _FINER
+    again = f"Repeat it with mesh.refine = {config.mesh.refine + 1}, and see how far it moves."
+    advice = "Change the element first." if locking(config) else again
     return (*found, *differences(parameter, expected_onset(config).theory, exact, crossings, advice))
 
 
@@ -223,8 +244,8 @@ def _coarse_beside(config: Config, crossings: Sequence[Crossing]) -> list[str]:
     edge, needed = contour_spacing(config), EDGES_PER_WAVE[config.mesh.element]
     return [
         f"The wave of {crossing.wavelength_mm:.3g} mm at {crossing.value:.4g} is {number:.2g} edges of "
-        f"{edge:.3g} mm long ({needed:g} are needed): a finer mesh moves the crossing. Lower "
-        "mesh.edge_length, or set mesh.refine = 1."
+        f"{edge:.3g} mm long ({needed:g} are needed): a finer mesh moves the crossing: "
+        f"{finer(config)}."
         for crossing in crossings
         if crossing.wavelength_mm is not None and (number := crossing.wavelength_mm / edge) < needed
     ]

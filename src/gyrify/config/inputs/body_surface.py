@@ -47,6 +47,10 @@ def body_surface(path: str, unit: str, digest: str, key: str = "file") -> Triang
     return _read(path, unit, digest, key)
 
 
+# Distance over the size of the body below which the interface lies on the surface.
+_COINCIDENT: Final = 1e-6
+
+
 @lru_cache(maxsize=4)
 def matching_points(path: str, outer: str, unit: str, digest: str) -> FloatArray:
     """Points of an interface that belong one by one to those of an outer surface.
@@ -86,7 +90,19 @@ def matching_points(path: str, outer: str, unit: str, digest: str) -> FloatArray
             f"geometry.interface_file ({Path(path).name}) has coordinates that are not finite numbers.",
             "Save it again from the program that made it.",
         )
-    return points[surface.source] * UNITS[unit]
+    found = np.asarray(points[surface.source] * UNITS[unit])
+    size = float(np.ptp(surface.points, axis=0).max())
+    same_place = np.flatnonzero(np.linalg.norm(found - surface.points, axis=1) < _COINCIDENT * size)
+    if same_place.size:
+        where = ", ".join(f"{x:.4g}" for x in surface.points[same_place[0]])
+        raise ConfigError(
+            f"geometry.interface_file ({Path(path).name}) and geometry.file coincide at {same_place.size} "
+            f"points, first at ({where}) mm: there is no cortex.",
+            "Give an interface that lies below the surface everywhere; FreeSurfer's white and pial coincide "
+            "where there is no cortex, on the medial wall: move them apart there, or leave "
+            "geometry.interface_file out.",
+        )
+    return found
 
 
 @lru_cache(maxsize=8)

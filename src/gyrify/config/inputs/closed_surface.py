@@ -143,7 +143,7 @@ def _cleaned(
 ) -> tuple[FloatArray, IntArray, IntArray, list[str]]:
     """Points once each, triangles with three corners, each once; and what was done."""
     notes = []
-    first = topology.welded(points, _SAME * float(np.ptp(points, axis=0).max()))
+    first = topology.welded(points, _SAME * float(np.ptp(points[np.unique(triangles)], axis=0).max()))
     n_welded = int((first != np.arange(first.size)).sum())
     triangles = first[triangles]
     is_whole = (np.diff(np.sort(triangles, axis=1), axis=1) > 0).all(axis=1)
@@ -158,7 +158,7 @@ def _cleaned(
     if n_flat := int((~is_whole).sum()):
         notes.append(f"{n_flat} triangles without area were left out")
     if n_repeated:
-        notes.append(f"{n_repeated} triangles that were there twice were left out")
+        notes.append(f"{n_repeated} repeated triangles were left out")
     if n_walls:
         notes.append(
             f"{n_walls} pairs of triangles back to back were left out, so that what lay on both sides of "

@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
+from stat import S_ISDIR, S_ISREG
 from typing import Any, Final
 
 from gyrify.errors import ConfigError
@@ -76,13 +77,16 @@ def content(key: str, path: str) -> bytes:
     """
     name = f"geometry.{key} = {_shown(path)}"
     try:
-        size = Path(path).stat().st_size
-        if size > MOST_BYTES:
+        about = Path(path).stat()
+        if not (S_ISREG(about.st_mode) or S_ISDIR(about.st_mode)):
+            raise ConfigError(f"{name}: it is a device or a pipe.", "Give the path of a file.")
+        with Path(path).open("rb") as file:  # which may grow after it was looked at
+            data = file.read(MOST_BYTES + 1)
+        if len(data) > MOST_BYTES:
             raise ConfigError(
-                f"{name} has {size / 1e6:.0f} MB; at most {MOST_BYTES / 1e6:.0f} are read.",
+                f"{name} has {about.st_size / 1e6:.0f} MB; at most {MOST_BYTES / 1e6:.0f} are read.",
                 "Give a surface with fewer triangles.",
             )
-        data = Path(path).read_bytes()
     except (OSError, ValueError) as fault:
         words: dict[type, str] = {
             FileNotFoundError: "there is no such file",

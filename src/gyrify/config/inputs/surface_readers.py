@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import base64
 import io
+import re
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final
@@ -11,7 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gyrify.base.extras import require
+from gyrify.config.inputs.named_files import MOST_BYTES
 from gyrify.errors import ConfigError
+
+# Bytes that are unfolded at a time.
+_PIECE: Final = 1_000_000
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -53,7 +60,7 @@ def read_triangles(data: bytes, name: str) -> Triangles:
         reader = _mesh_file
     else:
         raise ConfigError(
-            f'"{Path(name).name}" is of no known format: it must be {FORMATS}.',
+            f'"{Path(name).name}" has an unknown format: it must be {FORMATS}.',
             "Save the surface as STL or PLY.",
         )
     try:
@@ -82,7 +89,7 @@ def _mesh_file(data: bytes, suffix: str) -> Triangles:
 
 def _require_whole(data: bytes, suffix: str) -> None:
     """A binary STL says how many triangles it has."""
-    if suffix != ".stl" or data[:5].lower() == b"solid":
+    if suffix != ".stl" or data[:80].lstrip()[:5].lower() == b"solid":
         return
     counted = int.from_bytes(data[80:84], "little")
     if len(data) < 84 or len(data) < 84 + 50 * counted:
@@ -91,11 +98,31 @@ def _require_whole(data: bytes, suffix: str) -> None:
 
 def _gifti(data: bytes, _: str) -> Triangles:
     nibabel = require("nibabel", _EXTRA, "A surface from a GIfTI file")
+    _require_bounded(data)
     image = nibabel.GiftiImage.from_bytes(data)
     found = [image.get_arrays_from_intent(f"NIFTI_INTENT_{name}") for name in ("POINTSET", "TRIANGLE")]
     if not all(found):
         raise ValueError("it has no points and triangles")
     return _arrays(found[0][0].data, found[1][0].data)
+
+
+def _require_bounded(data: bytes) -> None:
+    """Blocks of a GIfTI file are deflated: a small one may hold more than fits into the memory."""
+    room = MOST_BYTES
+    for block in re.finditer(rb"<Data>([^<]*)</Data>", data):
+        try:
+            packed = base64.b64decode(block[1])
+        except ValueError:
+            continue  # a text of numbers, which is no larger than it looks
+        unpacked = zlib.decompressobj()
+        while packed and room >= 0:
+            try:
+                room -= len(unpacked.decompress(packed, _PIECE))
+            except zlib.error:
+                break
+            packed = unpacked.unconsumed_tail
+        if room < 0:
+            raise ValueError(f"it unfolds to more than {MOST_BYTES / 1e6:.0f} MB")
 
 
 def _freesurfer(data: bytes, _: str) -> Triangles:

@@ -43,7 +43,7 @@ def about(history: History, name: str, summary: dict[str, Any]) -> dict[str, Any
         "mesh": {key: summary["converged"][key] for key in ("converged", "sentence", "command")},
         "note": summary["stability_note"],
         "numbers": numbers(summary, history.mesh.n_dim),
-        "onset": summary["onset"],
+        "onset": _onset(summary, history),
         "settings": settings(config),
         "solver": solver(summary, history.mesh.n_dim),
         "versions": [[key, str(value)] for key, value in summary["versions"].items()],
@@ -51,6 +51,13 @@ def about(history: History, name: str, summary: dict[str, Any]) -> dict[str, Any
         "toml": config.to_toml(),
         "command": f"gyrify run config.toml --out {quote(name)}",
     }
+
+
+def _onset(summary: dict[str, Any], history: History) -> dict[str, Any] | None:
+    """The onset; of a closed surface the number of its mode is a degree, not one of waves."""
+    onset: dict[str, Any] | None = summary["onset"]
+    is_degree = history.mesh.n_dim == 3 and history.mesh.is_closed
+    return onset | {"is_degree": True} if onset is not None and is_degree else onset
 
 
 def subtitle(config: Config) -> str:

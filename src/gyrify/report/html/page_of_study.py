@@ -19,6 +19,8 @@ from gyrify.study import read_results
 # one state needs. Runs that find no room are shown by their outlines.
 _BUDGET: Final = 12_000_000
 _LEAST: Final = 60_000
+# Of slices and of bodies in space, which may be in one study.
+_QUANTITIES: Final = tuple({q.key: q for n_dim in (2, 3) for q in shown_in("study", n_dim)}.values())
 _MOST: Final = 24_000_000
 
 
@@ -68,11 +70,11 @@ def _columns(rows: Sequence[Row], keys: Sequence[str]) -> list[dict[str, Any]]:
     columns = [_column(key, axis_label(key), is_number=key in numbers, is_given=True) for key in keys]
     if any(map(warnings_of, rows)):
         columns.append(_column("n_warnings", "warnings"))
-    if rows and rows[0].get("phenotype") is not None:
+    if any(row.get("phenotype") is not None for row in rows):
         columns.append(_column("phenotype", "phenotype", is_number=False))
     return columns + [
         _column(q.key, q.axis, q.decimals and decimals((row.get(q.key) for row in rows), q.decimals))
-        for q in shown_in("study")
+        for q in _QUANTITIES
         if any(row.get(q.key) is not None for row in rows)
     ]
 
@@ -93,9 +95,7 @@ def _values(row: Row, keys: Sequence[str]) -> dict[str, Any]:
     """Values of the table's columns in one row."""
     found = {key: row[key] if isinstance(row[key], int | float) else plain(row[key]) for key in keys}
     found["n_warnings"] = len(warnings_of(row))
-    return found | {
-        key: row.get(key) for key in ("phenotype", *(quantity.key for quantity in shown_in("study")))
-    }
+    return found | {key: row.get(key) for key in ("phenotype", *(quantity.key for quantity in _QUANTITIES))}
 
 
 def _title(row: Row, keys: Sequence[str]) -> str:

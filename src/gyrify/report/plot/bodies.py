@@ -20,7 +20,7 @@ from gyrify.report.plot.field_colours import PAINTS, Paint, colour_bar, common_s
 from gyrify.report.plot.slices import Label, write_label
 from gyrify.report.plot.space_figure import in_view, panel, tissue_patches
 from gyrify.report.plot.style import DOUBLE, letter, new_figure, write
-from gyrify.report.surface_drawing import VIEWS, DrawnBody, paint
+from gyrify.report.surface_drawing import VIEWS, DrawnBody, paint, section_caption
 
 _GAP_MM: Final = 4.0
 _TOP_MM: Final = 2.0
@@ -125,11 +125,12 @@ def _draw(
 ) -> None:
     """Draw the panels of a row."""
     (bottom, tall), left = place, MARGIN_MM
-    middle = float(0.5 * (row.body.bounds[0][0] + row.body.bounds[1][0]))
+    low, high = row.body.bounds
+    middle, width = float(0.5 * (low[0] + high[0])), float(high[0] - low[0])
     surface, inside = (None, None) if row.paint is None else row.colours(scales[row.paint])
     for name, frame in frames.items():
         axes = panel(figure, (left, bottom, tall), scale, frame)
-        caption = name if name in VIEWS else f"section at x = {middle:.3g} mm".replace("-", "−")
+        caption = name if name in VIEWS else section_caption(middle, width)
         write(figure, left, bottom + tall + 4.5, caption, fontsize=7)
         paint(axes, row.body.surface(name, surface) if name in VIEWS else row.body.section(middle, inside))
         left += scale * float(frame[1][0] - frame[0][0]) + _GAP_MM

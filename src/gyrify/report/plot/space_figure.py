@@ -21,7 +21,7 @@ from gyrify.report.layout import (
     write_header,
 )
 from gyrify.report.plot.style import DOUBLE, add_axes, letter, new_figure, write
-from gyrify.report.surface_drawing import VIEWS, DrawnBody, paint
+from gyrify.report.surface_drawing import VIEWS, DrawnBody, paint, section_caption
 
 FloatArray = NDArray[np.float64]
 Bounds = tuple[FloatArray, FloatArray]
@@ -62,16 +62,17 @@ def space_figure(
     low, high = body.bounds
     size, middle = high - low, 0.5 * (low + high)
     # two panels a row: side and above; front and section
-    scale = (width_mm - 2.0 * MARGIN_MM - _GAP) / (size[0] + max(size[0], size[1]))
+    widest = max(size[0], size[1])
+    scale = (width_mm - 2.0 * MARGIN_MM - _GAP) / (2.0 * widest)
     rows = [max(size[2], size[1]) * scale, size[2] * scale]
     top = 2.8 + LINE_MM * len(lines)
     height = top + sum(rows) + 2.0 * _CAPTION + _GAP + FOOTER_MM
     figure = new_figure(width_mm, height)
     write_header(figure, lines)
-    second = MARGIN_MM + size[0] * scale + _GAP
+    second = MARGIN_MM + widest * scale + _GAP
     upper = height - top - rows[0] - _CAPTION
     lower = upper - rows[1] - _CAPTION - _GAP
-    section = f"section at x = {middle[0]:.3g} mm".replace("-", "−")
+    section = section_caption(float(middle[0]), float(widest))
     places = {
         "from the side": (MARGIN_MM, upper, rows[0]),
         "from above": (second, upper, rows[0]),

@@ -143,7 +143,7 @@ def _bodies(panels: Sequence[_Panel], count: int, width_mm: float | None) -> Fig
     """A row for every run of a study of bodies in space that has a state."""
     rows = [Row(DrawnBody(panel.point.mesh, panel.point.points), panel.label) for panel in panels]
     missing = count - len(panels)
-    note = f"{missing} of {count} runs have no state in space" if missing else ""
+    note = f"{missing} of {count} runs, slices or without a state, are not drawn here" if missing else ""
     return body_rows(rows, width_mm, Label((), note) if note else None)
 
 

@@ -155,5 +155,7 @@ def limit_point(before: float, last: float, first_eigenvalue: float, last_eigenv
     that is less symmetric than the body turns it into a limit point, near which the square of the lowest
     eigenvalue is linear, and beyond which no smooth state is left.
     """
+    if not first_eigenvalue > last_eigenvalue > 0.0:
+        return None
     first, end = first_eigenvalue**2, last_eigenvalue**2
-    return last + (last - before) * end / (first - end) if end < first else None
+    return last + (last - before) * end / (first - end)

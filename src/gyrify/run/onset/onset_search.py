@@ -101,8 +101,14 @@ class OnsetSearch:
 
     def _end_at_limit_point(self, failed: float) -> None:
         """Take the end of a stable branch as the onset, if its lowest eigenvalue vanishes there."""
-        before, last = sorted(self._branch.known)[-2:]
+        known = sorted(self._branch.known)
+        if len(known) < 2:
+            return
+        before, last = known[-2:]
         try:
+            if self._lowest.at(last) <= 0.0:  # it was lost on the way to where there is no state
+                self.changes.append(self._change(self._branch.at(last), 0))
+                return
             value = limit_point(before, last, self._lowest.at(before), self._lowest.at(last))
         except SolveError:
             return

@@ -63,7 +63,7 @@ def sphere_of(config: Config) -> Sphere:
     shared, geometry = _shared(config), config.geometry
     if geometry.shape == "surface" and (geometry.hole_file or geometry.surface.roundness < _ROUND):
         raise ConfigError(
-            "the theory is that of a sphere, and the surface of geometry.file is none.",
+            "the theory is that of a sphere, and the surface of geometry.file has another shape.",
             'Compare with geometry.shape = "sphere" of the same volume.',
         )
     if config.material.poisson_ratio != config.material.poisson_ratio_white:

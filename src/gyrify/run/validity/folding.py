@@ -23,7 +23,7 @@ def smooth_against_theory(history: History, summary: dict[str, Any]) -> list[str
     time, n_gyri = expected.growth_time, summary["n_gyri"]
     if time is None and n_gyri > 0:
         return [
-            f"The slice has {n_gyri} gyri, but by exact theory ({expected.theory}) its smooth state is "
+            f"The body has {n_gyri} gyri, but by exact theory ({expected.theory}) its smooth state is "
             "stable to the end of growth. Run it on a finer mesh (mesh.refine = 1): folds of the tissue "
             "stay, those of the mesh do not."
         ]
@@ -31,7 +31,7 @@ def smooth_against_theory(history: History, summary: dict[str, Any]) -> list[str
     if time is None or n_gyri > 0 or index > VISIBLE:
         return []
     return [
-        f"The slice is smooth at the end of growth, but by exact theory ({expected.theory}) the smooth state "
+        f"The body is smooth at the end of growth, but by exact theory ({expected.theory}) the smooth state "
         f"is unstable from growth time {time:.4g} on: smooth is not the answer of the tissue. "
         f"{_cause(history, time)}"
     ]

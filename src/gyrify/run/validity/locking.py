@@ -19,7 +19,9 @@ def locking(config: Config) -> list[str]:
     if config.mesh.element != "linear" or highest < LOCKING_POISSON_RATIO:
         return []
     can_average = config.growth.out_of_plane != "generalised"
-    advice = 'mesh.element = "quadratic" and mesh.inversion_resistance = 0.1'
+    advice = 'mesh.element = "quadratic"'
+    if config.geometry.n_dim == 2:
+        advice += " and mesh.inversion_resistance = 0.1"
     if can_average:
         advice = f'mesh.element = "mean_dilatation", or {advice}'
     key = "poisson_ratio" if material.poisson_ratio == highest else "poisson_ratio_white"

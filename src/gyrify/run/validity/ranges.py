@@ -215,9 +215,10 @@ RANGES: Final[tuple[Range, ...]] = (
         1.0,
         360.0,
         "",
-        "the values of Wang 2019; 3.6 from the scaling law of mammals, 2.78 from volumes at 30 to 40 weeks",
+        "the values of Wang 2019; 3.6 from the scaling law of mammals, 2.78 from volumes at 30 to 40 weeks; "
+        "from 1000 on white matter counts as not growing, as in Tallinen et al. 2016",
         "Below 1 the white matter grows faster than the cortex.",
-        lambda config: config.growth.ratio,
+        lambda config: config.growth.ratio if config.growth.ratio < 1000.0 else None,
     ),
     Range(
         "dissipation.number",

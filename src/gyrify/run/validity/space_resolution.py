@@ -11,8 +11,8 @@ from gyrify.run.validity.ranges import contour_spacing
 if TYPE_CHECKING:
     from gyrify.config import Config
 
-# Edges on a wave below which the onset on a mesh is late by more than 5 %, as measured on balls and patches
-# (docs/space.md).
+# Edges on a wave below which the onset on a mesh is late by more than some 5 %, as measured on balls and
+# patches (docs/space.md).
 EDGES_PER_WAVE: Final = {"linear": 30.0, "mean_dilatation": 18.0, "quadratic": 4.0}
 
 
@@ -32,7 +32,7 @@ def resolution_in_space(config: Config) -> list[str]:
     return [
         f"The mesh is coarse beside the folds: exact theory ({expected.theory}) expects a wave of "
         f"{length:.3g} mm, which {length / edge:.2g} edges of {edge:.3g} mm make up ({needed:g} are needed "
-        f"for an onset that is late by 5 %): folds come late, and wider. Set {finer}."
+        f"for an onset that is late by some 5 %): folds come late, and wider. Set {finer}."
     ]
 
 

@@ -24,4 +24,10 @@ def surface_notes(config: Config) -> list[str]:
                 f"The surface of geometry.{key} was repaired: {'; '.join(surface.notes)}. Look whether it is "
                 "what you mean."
             )
+    if (n := geometry.surface.n_parts) > 1:
+        found.append(
+            f"geometry.file has {n} closed surfaces: indices of hull and closing, depths and gyri are those "
+            "of all together, and count the clefts between them as sulci. Run each alone to compare its "
+            "indices."
+        )
     return [*found, *mesh_inside(config).notes]

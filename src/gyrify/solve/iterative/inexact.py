@@ -38,6 +38,8 @@ _SMALLEST: Final = 1e-10
 _GROWTH: Final = 4.0
 _BEYOND: Final = 2.0
 _RAISES: Final = 60
+# The least shift, over the largest entry of the stiffness.
+_LEAST: Final = 1e-9
 
 
 @dataclass
@@ -116,6 +118,8 @@ class InexactHessian:
             q = self._negative
             if q is not None:
                 tau = max(tau, -_BEYOND * dot(q, matrix @ q) / dot(q, mass * q))
+            if tau == 0.0:  # the curvature that was met is none but for rounding
+                tau = _LEAST * float(np.abs(matrix.diagonal).max()) / float(mass.max())
             found = self._solved(matrix.shifted(tau * mass), right, share)
             if found.negative is None:
                 return self._accepted(matrix, found, tau)

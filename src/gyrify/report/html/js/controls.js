@@ -76,7 +76,8 @@ function createModeSwitch(viewer, onset, onChange) {
       viewer.set({ mode: Number(amplitude.value) });
     },
   });
-  const waves = onset.mode_number ? `${onset.mode_number} waves of ${brief(onset.wavelength_mm, 3)} mm` : onset.kind;
+  const number = onset.is_degree ? `degree ${onset.mode_number}, waves` : `${onset.mode_number} waves`;
+  const waves = onset.mode_number ? `${number} of ${brief(onset.wavelength_mm, 3)} mm` : onset.kind;
   const about = `Critical mode: ${waves} at growth time ` +
     `${brief(onset.growth_time)}. ${viewer.what === "slice" ? "Orange: the state itself. " : ""}The amplitude is arbitrary.`;
   const bar = element("div", { class: "mode-bar", hidden: true }, element("span", {}, about),
