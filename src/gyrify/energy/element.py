@@ -39,10 +39,22 @@ def reference_element(n_nodes: int, n_dim: int) -> tuple[FloatArray, FloatArray]
     edges = EDGES.get(n_dim, ())
     if n_nodes != n_corners + len(edges):
         raise ValueError(f"no element with {n_nodes} nodes in {n_dim} dimensions")
-    # degree 2, enough for the optimal order; volume coordinates and their constant slopes
-    far, more = _COORDINATES[n_dim]
-    L = np.full((n_corners, n_corners), far) + more * np.eye(n_corners)
+    # degree 2, enough for the optimal order; volume coordinates have constant slopes
+    L = _integration_points(n_dim)
     corners = (4.0 * L - 1.0)[:, :, None] * slope
     a, b = np.array(edges).T
     between = 4.0 * (L[:, a, None] * slope[b] + L[:, b, None] * slope[a])
     return np.concatenate([corners, between], axis=1), np.full(n_corners, volume / n_corners)
+
+
+def quadratic_values(n_dim: int) -> FloatArray:
+    """(n_q, n_nodes) values of the shape functions of a quadratic simplex at its integration points."""
+    L = _integration_points(n_dim)
+    a, b = np.array(EDGES[n_dim]).T
+    return np.concatenate([L * (2.0 * L - 1.0), 4.0 * L[:, a] * L[:, b]], axis=1)
+
+
+def _integration_points(n_dim: int) -> FloatArray:
+    """(n_q, n_dim + 1) volume coordinates of the integration points of a quadratic simplex."""
+    far, more = _COORDINATES[n_dim]
+    return np.full((n_dim + 1, n_dim + 1), far) + more * np.eye(n_dim + 1)

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gyrify.config import Config
+from gyrify.energy.element import quadratic_values
 from gyrify.energy.term import FloatArray, IntArray
 from gyrify.mesh import GREY, Mesh
-from gyrify.mesh.shapes import shape_of
+from gyrify.mesh.shapes import SolidShape, shape_of
 from gyrify.physics.growth import Growth
 from gyrify.physics.materials import Material, material_named
 
@@ -44,6 +45,15 @@ class Places:
         """Middles of the cells about the integration points."""
         along, depth = mesh.middles
         return Places(mesh.region[cell] == GREY, np.asarray(mesh.across[cell]), along[cell], depth[cell])
+
+    @staticmethod
+    def within(mesh: Mesh, cell: IntArray, shape: SolidShape) -> Places:
+        """Integration points of quadratic tetrahedra: directions across curved layers differ inside a cell."""
+        values = quadratic_values(mesh.n_dim)
+        points = np.einsum("qa,cai->cqi", values, mesh.cell_points).reshape(-1, mesh.n_dim)
+        depth = (mesh.depth[mesh.cells] @ values.T).ravel()
+        grey, nowhere = mesh.region[cell] == GREY, np.full(cell.size, np.nan)
+        return Places(grey, shape.normals(points, depth), nowhere, depth)
 
 
 def growth_of(config: Config, places: Places) -> Growth:

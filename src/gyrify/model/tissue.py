@@ -14,6 +14,7 @@ from gyrify.energy.mean_dilatation import MeanDilatationEnergy, PatchPattern
 from gyrify.energy.term import FloatArray, IntArray
 from gyrify.errors import InvertedCellError
 from gyrify.mesh import GREY, Mesh
+from gyrify.mesh.shapes import SolidShape, shape_of
 from gyrify.model.body import Places, growth_of, material_of, parameters_of
 from gyrify.model.meshing import build_mesh
 from gyrify.model.rigid import isostatic_supports
@@ -51,9 +52,16 @@ class Tissue:
     def __init__(self, config: Config, mesh: Mesh | None = None) -> None:
         self.config = config
         self.mesh = build_mesh(config) if mesh is None else mesh
-        places = Places.of(self.mesh, self.simplices.cell)
+        places = self._places()
         self.growth = growth_of(config, places)
         self.material, self.parameters = material_of(config), parameters_of(config, places)
+
+    def _places(self) -> Places:
+        """Where the integration points are."""
+        cell, shape = self.simplices.cell, shape_of(self.config.geometry)
+        if self.simplices.curved is not None and isinstance(shape, SolidShape):
+            return Places.within(self.mesh, cell, shape)
+        return Places.of(self.mesh, cell)
 
     @property
     def bulk_modulus(self) -> FloatArray:
