@@ -57,4 +57,4 @@ def quadratic_values(n_dim: int) -> FloatArray:
 def _integration_points(n_dim: int) -> FloatArray:
     """(n_q, n_dim + 1) volume coordinates of the integration points of a quadratic simplex."""
     far, more = _COORDINATES[n_dim]
-    return np.full((n_dim + 1, n_dim + 1), far) + more * np.eye(n_dim + 1)
+    return np.asarray(np.full((n_dim + 1, n_dim + 1), far) + more * np.eye(n_dim + 1))

@@ -48,7 +48,7 @@ class Places:
 
     @staticmethod
     def within(mesh: Mesh, cell: IntArray, shape: SolidShape) -> Places:
-        """Integration points of quadratic tetrahedra: directions across curved layers differ inside a cell."""
+        """Integration points of quadratic tetrahedra; directions across curved layers differ in a cell."""
         values = quadratic_values(mesh.n_dim)
         points = np.einsum("qa,cai->cqi", values, mesh.cell_points).reshape(-1, mesh.n_dim)
         depth = (mesh.depth[mesh.cells] @ values.T).ravel()
