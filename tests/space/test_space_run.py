@@ -40,7 +40,7 @@ def test_it_folds_without_a_crossing(folder: Path) -> None:
     assert summary["gi"]["area"]["hull"] > 1.1
     # sulci are wide beside the ball of 5.7 mm
     assert 1.01 < summary["gi"]["area"]["closing"] < summary["gi"]["area"]["hull"]
-    assert summary["gi"]["sections"] > 1.02
+    assert summary["gi"]["sections"] > 1.01
     assert summary["sulcal_depth_mm"]["max"] > 1.0
     assert summary["n_gyri"] >= 1
     assert summary["min_gap_mm"] > 0.0

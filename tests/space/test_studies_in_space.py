@@ -108,7 +108,10 @@ def few_sections(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("few_sections")
-def test_pictures_and_tables_show_the_index_of_areas(done: StudyResult, capsys: Any) -> None:
+def test_pictures_and_tables_show_the_index_of_areas(
+    done: StudyResult, capsys: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "400")
     rows = read_results(done.folder).to_pylist()
     assert [len(cell.gi) for cell in cells(rows, KEYS)] == [1, 1, 1, 1]
     assert cells(rows, KEYS)[0].gi[0] == rows[0]["gi_area_closing"]

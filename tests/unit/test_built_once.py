@@ -46,7 +46,7 @@ def test_a_run_and_its_files_build_one_mesh_and_measure_each_state_once(
     history = gyrify.simulate(config, tmp_path / "run")
     write_outputs(history, tmp_path / "run")
     # advice on a finer mesh may build that one
-    assert [given for (given,) in meshes.calls if given == config] == [config]
+    assert [given for given, *_ in meshes.calls if given == config] == [config]
     assert len(tissues) == 1
     assert parsed.calls == []
     assert len(measured.calls) == len(history)

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from gyrify.config.rows import plain
 from gyrify.config.words import decimals
-from gyrify.metrics.quantities import shown_in
+from gyrify.metrics.quantities import Quantity, shown_in
 from gyrify.report.html.assembly import STUDY_SCRIPTS, page
 from gyrify.report.html.colours import colour_maps
 from gyrify.report.html.study_runs import described_run, warnings_of
@@ -19,8 +19,6 @@ from gyrify.study import read_results
 # one state needs. Runs that find no room are shown by their outlines.
 _BUDGET: Final = 12_000_000
 _LEAST: Final = 60_000
-# Of slices and of bodies in space, which may be in one study.
-_QUANTITIES: Final = tuple({q.key: q for n_dim in (2, 3) for q in shown_in("study", n_dim)}.values())
 _MOST: Final = 24_000_000
 
 
@@ -74,9 +72,14 @@ def _columns(rows: Sequence[Row], keys: Sequence[str]) -> list[dict[str, Any]]:
         columns.append(_column("phenotype", "phenotype", is_number=False))
     return columns + [
         _column(q.key, q.axis, q.decimals and decimals((row.get(q.key) for row in rows), q.decimals))
-        for q in _QUANTITIES
+        for q in _quantities()
         if any(row.get(q.key) is not None for row in rows)
     ]
+
+
+def _quantities() -> list[Quantity]:
+    """Those of slices and of bodies in space, which may be in one study."""
+    return list({q.key: q for n_dim in (2, 3) for q in shown_in("study", n_dim)}.values())
 
 
 def _column(
@@ -95,7 +98,7 @@ def _values(row: Row, keys: Sequence[str]) -> dict[str, Any]:
     """Values of the table's columns in one row."""
     found = {key: row[key] if isinstance(row[key], int | float) else plain(row[key]) for key in keys}
     found["n_warnings"] = len(warnings_of(row))
-    return found | {key: row.get(key) for key in ("phenotype", *(quantity.key for quantity in _QUANTITIES))}
+    return found | {key: row.get(key) for key in ("phenotype", *(quantity.key for quantity in _quantities()))}
 
 
 def _title(row: Row, keys: Sequence[str]) -> str:
