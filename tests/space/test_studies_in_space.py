@@ -36,7 +36,7 @@ def points(base: Config, *overrides: dict[str, Any]) -> list[Point]:
 def done(tmp_path_factory: pytest.TempPathFactory) -> StudyResult:
     parameters = [{"key": key, "values": list(values)} for key, values in GRID.items()]
     study = Study(SMALL, Study.from_mapping({"design": {"kind": "grid", "parameter": parameters}}).design)
-    with ThreadPoolExecutor(2) as executor:
+    with ThreadPoolExecutor(1) as executor:
         return run_points(study.points(), tmp_path_factory.mktemp("study"), executor=executor)
 
 
