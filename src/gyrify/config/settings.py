@@ -197,7 +197,14 @@ class Config(Section):
     def to_toml(self, *, is_stored: bool = False) -> str:
         """Write every value as TOML with its unit; reading it back gives an equal configuration.
 
-        A stored one names the copies of its files, as seen from the folder of the run.
+        Parameters
+        ----------
+        is_stored : bool
+            Whether to name the copies of its files, as seen from the folder of the run.
+
+        Returns
+        -------
+        str
         """
         top = [(name, getattr(self, name), "") for name in self.top_level()]
         blocks = [toml_text.table(top)]

@@ -126,7 +126,17 @@ class Threshold:
     counted: Counted = "waves"
 
     def wave(self, crossing: Crossing | None = None) -> str:
-        """What folds at a crossing, at the critical one by default: "19 waves of 11.9 mm", or nothing."""
+        """What folds at a crossing: "19 waves of 11.9 mm", or nothing.
+
+        Parameters
+        ----------
+        crossing : Crossing, optional
+            The critical one by default.
+
+        Returns
+        -------
+        str
+        """
         at = crossing or self
         if at.mode_number is None or at.wavelength_mm is None:
             return ""
