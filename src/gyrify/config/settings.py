@@ -201,10 +201,6 @@ class Config(Section):
         ----------
         is_stored : bool
             Whether to name the copies of its files, as seen from the folder of the run.
-
-        Returns
-        -------
-        str
         """
         top = [(name, getattr(self, name), "") for name in self.top_level()]
         blocks = [toml_text.table(top)]
