@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 
 from gyrify.run.onset.crossing import limit_point
+from gyrify.run.onset.onset_search import OnsetSearch
 
 
 def test_the_square_of_the_eigenvalue_goes_to_zero_along_a_line() -> None:
@@ -16,3 +19,20 @@ def test_the_square_of_the_eigenvalue_goes_to_zero_along_a_line() -> None:
 @pytest.mark.parametrize(("first", "last"), [(1.0, -0.5), (-1.0, -2.0), (1.0, 1.0), (0.5, 1.0), (1.0, 0.0)])
 def test_states_that_are_unstable_or_grow_stiffer_tell_none(first: float, last: float) -> None:
     assert limit_point(0.0, 1.0, first, last) is None
+
+
+def test_a_branch_that_is_unstable_at_its_end_has_crossed_and_not_turned_back() -> None:
+    """Halvings towards a state that is not found may pass the loss of stability."""
+    eigenvalues = {0.0: 2.0, 0.1: 1.0, 0.125: -0.5}
+    search, told = object.__new__(OnsetSearch), []
+    unstable = SimpleNamespace(tangent=lambda _: SimpleNamespace(n_negative=2))
+    vars(search).update(
+        _branch=SimpleNamespace(known=eigenvalues, at=lambda _: unstable),
+        _lowest=SimpleNamespace(at=eigenvalues.get, system=None),
+        _change=lambda state, before: told.append((state, before)),
+        _n_negative=0, onset=None, changes=[],
+    )  # fmt: skip
+    search._end_at_limit_point(0.15)
+    assert told == [(unstable, 0)]
+    assert search._n_negative == 2
+    assert search.onset is None

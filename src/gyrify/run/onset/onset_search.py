@@ -107,7 +107,9 @@ class OnsetSearch:
         before, last = known[-2:]
         try:
             if self._lowest.at(last) <= 0.0:  # it was lost on the way to where there is no state
-                self.changes.append(self._change(self._branch.at(last), 0))
+                state = self._branch.at(last)
+                self._n_negative = state.tangent(self._lowest.system).n_negative
+                self.changes.append(self._change(state, 0))
                 return
             value = limit_point(before, last, self._lowest.at(before), self._lowest.at(last))
         except SolveError:
