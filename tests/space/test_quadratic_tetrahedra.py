@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from math import comb
+
 import numpy as np
 import pytest
 from solids import BALL, PATCH, config
 
+from gyrify.energy import bernstein_space
 from gyrify.energy.element import EDGES
 from gyrify.energy.term import FloatArray
 from gyrify.mesh import Mesh
@@ -84,6 +87,15 @@ def test_a_step_ends_where_some_cell_inverts_anywhere_in_it(rng: np.random.Gener
     assert all(curved.first_inverted(part * end * du) is None for part in (0.2, 0.6, 0.99))
     assert curved.first_inverted(1.02 * end * du) is not None
     assert problem.simplices.volume_ratio(1.02 * end * du).min() > 0.0
+
+
+def test_coefficients_in_time_are_those_of_a_cubic(rng: np.random.Generator) -> None:
+    powers, forms = rng.standard_normal((4, bernstein_space.N)), np.empty((4, bernstein_space.N))
+    bernstein_space.in_time(powers, 0.3, 0.5, forms)
+    for part in (0.0, 0.2, 0.7, 1.0):
+        weights = [comb(3, k) * part**k * (1.0 - part) ** (3 - k) for k in range(4)]
+        time = 0.3 + 0.5 * part
+        assert weights @ forms == pytest.approx(time ** np.arange(4) @ powers, rel=1e-12, abs=1e-12)
 
 
 def test_onset_on_few_quadratic_cells_is_that_of_exact_theory() -> None:

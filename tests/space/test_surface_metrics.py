@@ -20,7 +20,14 @@ from gyrify.metrics.surface import (
 )
 from gyrify.metrics.surface_closing import SurfaceClosing
 from gyrify.metrics.surface_folds import SurfaceFolds, prominent_peaks
-from gyrify.metrics.surface_pairs import closest_points, crosses_itself, distances_to, smallest_gap
+from gyrify.metrics.surface_pairs import (
+    _FACING,
+    _facing_groups,
+    closest_points,
+    crosses_itself,
+    distances_to,
+    smallest_gap,
+)
 from gyrify.metrics.surface_sections import section, section_index, sections
 
 R = 30.0
@@ -261,3 +268,12 @@ def test_triangles_about_a_point_are_no_other_side_of_a_sulcus() -> None:
     # between opposite walls at half the depth, which edges to the bottom would measure
     half_way = 0.5 * np.linalg.norm(x[rim] - x[rim[0]], axis=1).max()
     assert smallest_gap(x, faces) > half_way
+
+
+def test_no_pair_that_faces_each_other_is_left_out(rng: np.random.Generator) -> None:
+    directions, facets = (v / np.linalg.norm(v, axis=1)[:, None] for v in rng.standard_normal((2, 300, 3)))
+    looked_at = np.zeros((300, 300), dtype=bool)
+    for own, other in _facing_groups(directions, facets):
+        looked_at[np.ix_(own, other)] = True
+    assert looked_at[directions @ facets.T < _FACING].all()
+    assert looked_at.mean() < 0.8
