@@ -11,12 +11,14 @@ from pydantic import Field, model_validator
 from gyrify.config.base import Section, setting
 from gyrify.config.inputs.named_files import FILE_KEYS, digest
 from gyrify.config.registered import Registered
+from gyrify.config.tables import Labels
 from gyrify.errors import ConfigError
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from gyrify.config.inputs.body_volume import TetrahedronVolume
     from gyrify.config.inputs.closed_surface import TriangleSurface
 
 PAPER: Final = "Wang 2019"
@@ -28,23 +30,23 @@ STANDARD_THICKNESS: Final = 1.5
 Shape = Annotated[
     str,
     Registered(
-        ("ellipse", "circle", "strip", "sphere", "ellipsoid", "patch", "surface"),
+        ("ellipse", "circle", "strip", "sphere", "ellipsoid", "patch", "surface", "volume"),
         "gyrify.mesh.shapes",
         lambda module: module.SHAPES,
     ),
 ]
 # Shapes in space; what lies in the plane has no say in them, and they none in it.
-IN_SPACE: Final = frozenset({"sphere", "ellipsoid", "patch", "surface"})
+IN_SPACE: Final = frozenset({"sphere", "ellipsoid", "patch", "surface", "volume"})
 PERIODIC: Final = frozenset({"strip", "patch"})
 # Shapes that are read from files.
-FROM_FILES: Final = frozenset({"surface"})
+FROM_FILES: Final = frozenset({"surface", "volume"})
 Axis = Annotated[float, Field(gt=0, le=1e5)]
 
 
 class Geometry(Section):
     """The body: in the plane a hollow ellipse or circle, or a strip that is periodic in x and clamped below;
-    in space a sphere or an ellipsoid, solid or hollow, a patch, periodic in x and y and clamped below, or
-    what is inside a closed surface from a file."""
+    in space a sphere or an ellipsoid, solid or hollow, a patch, periodic in x and y and clamped below,
+    what is inside a closed surface from a file, or tetrahedra from one."""
 
     shape: Shape = setting("ellipse", "Shape of the body.", source=f"{PAPER}, Fig. 1")
     area: float = setting(
@@ -96,8 +98,9 @@ class Geometry(Section):
     )
     file: str = setting(
         "",
-        "Closed surface of triangles (STL, PLY, OFF, OBJ, GIfTI, FreeSurfer); surface only, which needs it. "
-        "Relative to the configuration file.",
+        "Closed surface of triangles (STL, PLY, OFF, OBJ, GIfTI, FreeSurfer), or tetrahedra of a volume "
+        "(MESH, VTK, VTU, MSH, INP and others); surface and volume only, which need it. Relative to the "
+        "configuration file.",
     )
     hole_file: str = setting("", "Closed surface of a hole in the white matter; surface only.")
     interface_file: str = setting(
@@ -106,6 +109,11 @@ class Geometry(Section):
         "lies T below the surface.",
     )
     unit: Literal["um", "mm", "cm", "m"] = setting("mm", "Unit of length of the files.")
+    labels: Labels = setting(
+        Labels(),
+        "Labels of a volume's tetrahedra, each a list of whole numbers. Without them tetrahedra are grey by "
+        "their depth.",
+    )
     digest: str = setting(
         "",
         "SHA-256 of the files. Found when it is not given; if it is, files with another one are refused.",
@@ -117,9 +125,12 @@ class Geometry(Section):
         """Paths no longer depend on the folder, and the digest is that of the files."""
         if self.shape in FROM_FILES:
             if not self.file:
+                what, name = (
+                    ("tetrahedra", "brain.mesh") if self.shape == "volume" else ("surface", "surface.stl")
+                )
                 raise ConfigError(
-                    f'geometry.shape = "{self.shape}" is not allowed without geometry.file, the surface.',
-                    'Try geometry.file = "surface.stl", relative to the configuration file.',
+                    f'geometry.shape = "{self.shape}" is not allowed without geometry.file, the {what}.',
+                    f'Try geometry.file = "{name}", relative to the configuration file.',
                 )
             paths = {key: os.path.abspath(path) if (path := getattr(self, key)) else "" for key in FILE_KEYS}
             found = digest(paths)
@@ -133,9 +144,11 @@ class Geometry(Section):
 
     @property
     def surface(self) -> TriangleSurface:
-        """Surface of a body from a file."""
+        """Outer surface of a body from a file."""
         from gyrify.config.inputs.body_surface import body_surface
 
+        if self.shape == "volume":
+            return self.volume.outer
         return body_surface(self.file, self.unit, self.digest)
 
     @property
@@ -143,7 +156,16 @@ class Geometry(Section):
         """Surface of its hole; None where there is none."""
         from gyrify.config.inputs.body_surface import body_surface
 
+        if self.shape == "volume":
+            return self.volume.hole
         return body_surface(self.hole_file, self.unit, self.digest, "hole_file") if self.hole_file else None
+
+    @property
+    def volume(self) -> TetrahedronVolume:
+        """Tetrahedra of a body from a file."""
+        from gyrify.config.inputs.body_volume import body_volume
+
+        return body_volume(self.file, self.unit, self.digest, self.labels)
 
     @property
     def interface_points(self) -> NDArray[np.float64] | None:

@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from gyrify.config.base import Section, setting
 from gyrify.config.body_sections import PAPER
 from gyrify.config.registered import Registered
+from gyrify.config.tables import Plane
 
 Law = Annotated[
     str,
@@ -122,10 +123,14 @@ class Growth(Section):
 class Boundary(Section):
     """What holds the body."""
 
-    clamp: Literal["hole", "none"] = setting(
+    clamp: Literal["hole", "none", "plane"] = setting(
         "hole",
-        "What is held: the hole (or the lower side of a strip or a patch), or nothing; a solid body has no "
-        "hole, and is free.",
+        "What is held: the hole (or the lower side of a strip or a patch), nothing, or a plane of symmetry "
+        "that half a brain ends in; a solid body has no hole, and is free.",
+    )
+    plane: Plane = setting(
+        Plane(),
+        "Plane of symmetry: a point on it [mm], and its normal, along an axis and out of the body.",
     )
 
 

@@ -27,14 +27,12 @@ NOT_HASHED: Final = frozenset({"output", "limits"})
 # Keys that came later, with their section: at its default such a key is not hashed, so that the hashes of
 # earlier configurations stay.
 LATER: Final = (
-    ("geometry", "width"),
-    ("geometry", "semi_axes"),
-    *(("geometry", key) for key in (*FILE_KEYS, "unit", "digest")),
+    *(("geometry", key) for key in ("width", "semi_axes", *FILE_KEYS, "unit", "labels", "digest")),
     ("mesh", "edge_length"),
     ("mesh", "inversion_resistance"),
     ("growth", "profile"),
     ("growth", "transition"),
-    ("boundary", "clamp"),
+    *(("boundary", key) for key in ("clamp", "plane")),
     ("growth", "out_of_plane_exponent"),
     ("dissipation", "course"),
     ("material", "law"),

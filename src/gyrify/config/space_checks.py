@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
-from gyrify.config.body_sections import FROM_FILES
+from gyrify.config.body_sections import FROM_FILES, PERIODIC
 from gyrify.config.inputs.named_files import FILE_KEYS
 from gyrify.config.words import show
 
@@ -35,6 +35,8 @@ def finer(config: Config) -> str:
 def n_cells(config: Config) -> float:
     """About how many tetrahedra a body in space has at most: three to a prism."""
     geometry, mesh = config.geometry, config.mesh
+    if geometry.shape == "volume":
+        return float(geometry.volume.cells.shape[0]) * 8.0**mesh.refine
     if geometry.shape in FROM_FILES:  # about as many white cells as two layers have
         layers = mesh.n_cortex_layers + 2
         n_triangles = int(geometry.surface.triangles.shape[0])
@@ -50,7 +52,7 @@ def n_cells(config: Config) -> float:
 def hole(config: Config) -> str:
     """A hole in the plane has a size; in space there may be none."""
     geometry = config.geometry
-    if geometry.shape in ("strip", "patch", "surface") or geometry.hole_fraction >= _SMALLEST_HOLE:
+    if geometry.shape in (*PERIODIC, *FROM_FILES) or geometry.hole_fraction >= _SMALLEST_HOLE:
         return ""
     if geometry.n_dim == 3 and geometry.hole_fraction == 0.0:
         return ""
@@ -116,8 +118,15 @@ def transition(config: Config) -> str:
 
 
 def clamp(config: Config) -> str:
-    """Periodic bodies are held below."""
-    if config.boundary.clamp == "hole" or config.geometry.shape not in ("strip", "patch"):
+    """Periodic bodies are held below, and volumes alone end in a plane of symmetry."""
+    if config.boundary.clamp == "plane":
+        return _plane(config)
+    if config.boundary.plane != type(config.boundary)().plane:
+        return (
+            f'boundary.plane is not allowed with boundary.clamp = "{config.boundary.clamp}", which does not '
+            'use it. Try boundary.clamp = "plane".'
+        )
+    if config.boundary.clamp == "hole" or config.geometry.shape not in PERIODIC:
         return ""
     return (
         f'boundary.clamp = "{config.boundary.clamp}" is not allowed with geometry.shape = '
@@ -126,8 +135,24 @@ def clamp(config: Config) -> str:
     )
 
 
+def _plane(config: Config) -> str:
+    if config.geometry.shape != "volume":
+        return (
+            f'boundary.clamp = "plane" is not allowed with geometry.shape = "{config.geometry.shape}": half '
+            'a body is given as tetrahedra that end in the plane. Try geometry.shape = "volume", or the '
+            'whole body with boundary.clamp = "none".'
+        )
+    normal = config.boundary.plane.normal
+    if sorted(abs(x) for x in normal) == [0.0, 0.0, 1.0]:
+        return ""
+    return (
+        f"boundary.plane.normal = {show(normal)} is not allowed: it must be a unit vector along an axis. Try "
+        "[0, 1, 0], or turn the body."
+    )
+
+
 def files(config: Config) -> str:
-    """Nothing but a surface has files, and its triangles are those of its file."""
+    """Bodies from files alone have files, and their cells are those of the files."""
     geometry, cut = config.geometry, config.mesh
     if geometry.shape in FROM_FILES:
         if cut.element == "quadratic":
@@ -142,14 +167,38 @@ def files(config: Config) -> str:
                 f"{geometry.surface.mean_edge:.3g} mm. Try mesh.edge_length = 0, and mesh.refine to halve "
                 "them."
             )
-        return _parts(config)
+        return _of_volume(config) or _parts(config)
     defaults = type(geometry)()
-    for key in (*FILE_KEYS, "unit", "digest"):
+    for key in (*FILE_KEYS, "unit", "labels", "digest"):
         if getattr(geometry, key) != getattr(defaults, key):
             return (
                 f"geometry.{key} = {show(getattr(geometry, key))} is not allowed with geometry.shape = "
                 f'"{geometry.shape}", which has no files. Try geometry.shape = "surface".'
             )
+    return ""
+
+
+def _of_volume(config: Config) -> str:
+    """What a volume has none of, and a surface has alone."""
+    geometry = config.geometry
+    if geometry.shape == "surface":
+        if geometry.labels == type(geometry)().labels:
+            return ""
+        return (
+            'geometry.labels is not allowed with geometry.shape = "surface": triangles have no tissue. Try '
+            'geometry.shape = "volume".'
+        )
+    for key in ("hole_file", "interface_file"):
+        if getattr(geometry, key):
+            return (
+                f'geometry.{key} is not allowed with geometry.shape = "volume": what its tetrahedra leave '
+                "empty inside is the hole, and geometry.labels tell the tissues. Leave it out."
+            )
+    if config.mesh.refine_cortex:
+        return (
+            f"mesh.refine_cortex = {config.mesh.refine_cortex} is not allowed with geometry.shape = "
+            '"volume": its tetrahedra are refined together. Try mesh.refine.'
+        )
     return ""
 
 

@@ -11,6 +11,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Final
 
+from pydantic import BaseModel
+
 from gyrify.config.numbers import MAX_LENGTH, NUMBER_PATTERN, number_advice
 from gyrify.config.words import shorten
 from gyrify.errors import ConfigError
@@ -132,7 +134,7 @@ def literal(value: Any) -> str:
 
     Parameters
     ----------
-    value : bool, int, float, str or sequence of those
+    value : bool, int, float, str, sequence of those, or a small table
         Floats are finite; their shortest exact form is written.
 
     Returns
@@ -142,6 +144,8 @@ def literal(value: Any) -> str:
     """
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, BaseModel):
+        return "{" + ", ".join(f"{key} = {literal(item)}" for key, item in value) + "}"
     if isinstance(value, list | tuple):
         return "[" + ", ".join(literal(item) for item in value) + "]"
     return str(value).lower() if isinstance(value, bool) else repr(value)

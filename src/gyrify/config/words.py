@@ -8,6 +8,7 @@ import typing
 from collections.abc import Iterable, Mapping
 from typing import Any, Final
 
+from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from gyrify.config.registered import Registered
@@ -114,6 +115,8 @@ def allowed(field: FieldInfo) -> str:
     if typing.get_origin(kinds[0]) is tuple and not choices(field):
         parts.append(f"a list of {len(typing.get_args(kinds[0]))} numbers{_range(bounds(field))}{unit}")
     words = [show(word) for word in choices(field)]
+    if isinstance(kinds[0], type) and issubclass(kinds[0], BaseModel):
+        parts.append(f"a table with {', '.join(kinds[0].model_fields)}")
     if str in kinds and not words:
         parts.append("text")
     if words:

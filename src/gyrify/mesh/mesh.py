@@ -57,6 +57,8 @@ class Mesh:
         In space, triangles of the outer surface and of the interface, counter-clockwise seen from outside.
     notes : tuple of str
         What a user should know about it, as sentences.
+    on_plane : (n,) int array
+        Points in a plane of symmetry.
     """
 
     points: FloatArray
@@ -76,6 +78,7 @@ class Mesh:
     faces: IntArray = field(default_factory=lambda: np.empty((0, 3), dtype=np.int64))
     interface_faces: IntArray = field(default_factory=lambda: np.empty((0, 3), dtype=np.int64))
     notes: tuple[str, ...] = ()
+    on_plane: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
 
     def __post_init__(self) -> None:
         for array in (
@@ -91,6 +94,7 @@ class Mesh:
             self.depth,
             self.faces,
             self.interface_faces,
+            self.on_plane,
         ):
             array.flags.writeable = False
 

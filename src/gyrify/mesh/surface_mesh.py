@@ -132,7 +132,8 @@ def jittered(mesh: Mesh, size: float, seed: int) -> Mesh:
             length = np.linalg.norm(mesh.points[mesh.cells[:, i]] - mesh.points[mesh.cells[:, j]], axis=1)
             np.minimum.at(shortest, mesh.cells[:, i], length)
             np.minimum.at(shortest, mesh.cells[:, j], length)
-    shortest[mesh.contour] = shortest[mesh.interface] = shortest[mesh.clamped] = 0.0
+    for kept in (mesh.contour, mesh.interface, mesh.clamped, mesh.on_plane):
+        shortest[kept] = 0.0
     return replace(mesh, points=mesh.points + shortest[:, None] * noise)
 
 

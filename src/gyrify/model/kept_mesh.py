@@ -1,4 +1,4 @@
-"""The mesh inside a surface from a file: made once, and kept beside the copy of the file in a run.
+"""The mesh of a body from a file: made once, and kept beside the copy of the file in a run.
 
 A mesher of another version may make another mesh; what a run was begun on is therefore stored with it.
 """
@@ -10,7 +10,7 @@ import io
 import json
 import zipfile
 from collections import OrderedDict
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Final
 
@@ -20,8 +20,9 @@ from gyrify.config import Config
 from gyrify.config.inputs.named_files import FILE_KEYS, FOLDER, MESH
 from gyrify.errors import MeshError
 from gyrify.mesh import Mesh
-from gyrify.mesh.shapes import SurfaceBody, shape_of
+from gyrify.mesh.shapes import SurfaceBody, VolumeBody, shape_of
 from gyrify.mesh.surface_mesh import SurfaceLayers, surface_mesh
+from gyrify.mesh.volume_mesh import volume_mesh
 
 _ARRAYS: Final = (
     "points",
@@ -35,8 +36,9 @@ _ARRAYS: Final = (
     "depth",
     "faces",
     "interface_faces",
+    "on_plane",
 )
-_FORMAT: Final = 1
+_FORMAT: Final = 2
 _MOST_BYTES: Final = 4_000_000_000
 # Meshes at hand: that of a run, and that of the smooth body without jitter is the same.
 _MOST_KEPT: Final = 2
@@ -44,7 +46,7 @@ _made: OrderedDict[tuple[object, ...], Mesh] = OrderedDict()
 
 
 def mesh_inside(config: Config) -> Mesh:
-    """Mesh of a body inside a surface, without jitter: the one beside its file, or a new one.
+    """Mesh of a body from a file, without jitter: the one beside its file, or a new one.
 
     Raises
     ------
@@ -99,6 +101,8 @@ def _key(config: Config) -> str:
         _FORMAT,
         geometry.digest,
         geometry.unit,
+        geometry.labels,
+        config.boundary.plane if config.boundary.clamp == "plane" else None,
         geometry.cortical_thickness,
         mesh.n_cortex_layers,
         mesh.grading,
@@ -110,6 +114,10 @@ def _key(config: Config) -> str:
 
 def _new(config: Config) -> Mesh:
     body, mesh = shape_of(config.geometry), config.mesh
+    if isinstance(body, VolumeBody):
+        is_half, plane = config.boundary.clamp == "plane", config.boundary.plane
+        cut = (np.array(plane.point), np.array(plane.normal)) if is_half else None
+        return volume_mesh(replace(body, plane=cut), mesh.refine)
     assert isinstance(body, SurfaceBody)
     layers = SurfaceLayers(mesh.n_cortex_layers, mesh.grading == "uniform", mesh.refine, mesh.refine_cortex)
     return surface_mesh(body, layers)

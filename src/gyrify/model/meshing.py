@@ -13,7 +13,7 @@ from gyrify.mesh import Mesh
 from gyrify.mesh.layered import layered_mesh
 from gyrify.mesh.layered_grid import Layers
 from gyrify.mesh.quality import SliverError
-from gyrify.mesh.shapes import SolidShape, SurfaceBody, shape_of
+from gyrify.mesh.shapes import SolidShape, SurfaceBody, VolumeBody, shape_of
 from gyrify.mesh.shelled import ShellLayers, shell_mesh
 from gyrify.mesh.surface_mesh import jittered
 from gyrify.model.kept_mesh import mesh_inside
@@ -54,7 +54,7 @@ def _built(config: Config, like: Config) -> Mesh:
     if config.geometry.shape in FROM_FILES:
         return jittered(mesh_inside(config), mesh.node_jitter, config.seed)
     shape = shape_of(config.geometry)
-    assert not isinstance(shape, SurfaceBody)
+    assert not isinstance(shape, SurfaceBody | VolumeBody)
     if isinstance(shape, SolidShape):
         other = shape_of(like.geometry)
         assert isinstance(other, SolidShape)

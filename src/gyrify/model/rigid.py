@@ -10,6 +10,8 @@ from gyrify.energy.term import FloatArray, IntArray
 
 # Parts by which two candidates are told apart: less is rounding, and the first one is taken.
 _TIE: Final = 1e-9
+# Rigid motions that move held points by less than this part of the others do not move them.
+_HELD: Final = 1e-9
 
 
 def rigid_modes(points: FloatArray) -> FloatArray:
@@ -30,12 +32,22 @@ def rigid_modes(points: FloatArray) -> FloatArray:
     return np.stack(modes, axis=1)
 
 
-def isostatic_supports(points: FloatArray) -> IntArray:
-    """Degrees of freedom, in order, that prevent all rigid motions and no deformation.
+def kept_modes(modes: FloatArray, held: IntArray) -> FloatArray:
+    """(n_dofs, k) rigid motions, of those given, that leave some degrees of freedom where they are."""
+    _, size, right = np.linalg.svd(modes[held], full_matrices=True)
+    rank = int(np.count_nonzero(size > _HELD * size[0]))
+    found = modes @ right[rank:].T
+    # exactly, not but for rounding
+    found[held] = 0.0
+    return np.asarray(found)
+
+
+def isostatic_supports(modes: FloatArray) -> IntArray:
+    """Degrees of freedom, in order, that prevent (n_dofs, n) rigid motions and no deformation.
 
     Each is where the rigid motions that those before it have left move most.
     """
-    left = rigid_modes(points)
+    left = modes
     chosen = []
     for _ in range(left.shape[1]):
         size = np.einsum("ij,ij->i", left, left)

@@ -12,6 +12,7 @@ from gyrify.base.force_units import force_unit
 from gyrify.config import Config
 from gyrify.energy.contact import ContactEnergy, ContactSurface
 from gyrify.energy.contact_libraries import LibraryName
+from gyrify.energy.plane_contact import PlaneContact
 from gyrify.energy.term import FloatArray, IntArray
 from gyrify.energy.total import TotalEnergy
 from gyrify.energy.unknowns import Unknowns
@@ -240,10 +241,19 @@ class Slice(Tissue):
 
     def contact_energy(self, u: FloatArray) -> ContactEnergy:
         """Contact barrier for an increment that starts at a state u."""
-        contact, T = self.config.contact, self.config.geometry.cortical_thickness
         spacing = self._spacing(u)
-        d_hat = min(contact.activation_fraction * T, 0.5 * spacing)
-        return ContactEnergy(self.surface, d_hat, self.barrier_stiffness, 0.25 * spacing)
+        return ContactEnergy(self.surface, self._activation(spacing), self.barrier_stiffness, 0.25 * spacing)
+
+    def plane_contact(self, u: FloatArray) -> PlaneContact:
+        """Barrier before a plane of symmetry, half as far as that before an image as far behind it."""
+        facing = self.facing
+        d_hat = 0.5 * min(self._activation(self._spacing(u)), float(facing.gap.min(initial=np.inf)))
+        return PlaneContact(facing, d_hat, self.barrier_stiffness)
+
+    def _activation(self, spacing: float) -> float:
+        """Distance at which contact sets in [mm]."""
+        contact, T = self.config.contact, self.config.geometry.cortical_thickness
+        return min(contact.activation_fraction * T, 0.5 * spacing)
 
     def energy(self, fraction: float, start: State, start_fraction: float) -> TotalEnergy:
         """See `gyrify.solve.problem.Problem`."""
@@ -275,5 +285,11 @@ class Slice(Tissue):
         return max(self.surface.spacing(u), COLLAPSED * self.surface.spacing(np.zeros_like(u)))
 
     def is_path_admissible(self, u: FloatArray, u_end: FloatArray) -> bool:
-        """See `gyrify.solve.problem.Problem`."""
-        return not self.config.contact.enabled or self.surface.is_path_collision_free(u, u_end)
+        """See `gyrify.solve.problem.Problem`; in space folds slide along each other, on no straight path.
+
+        There each step of a descent is free of collisions, and cells are positive inside a surface that
+        crosses itself nowhere: then no two places of the body meet (Ball 1981).
+        """
+        if self.mesh.n_dim == 3 or not self.config.contact.enabled:
+            return True
+        return self.surface.is_path_collision_free(u, u_end)

@@ -121,10 +121,17 @@ def _contact(step: GrowthStep) -> EnergyTerm | None:
     return step.problem.contact_energy(step.start_u) if step.problem.config.contact.enabled else None
 
 
+def _plane(step: GrowthStep) -> EnergyTerm | None:
+    problem = step.problem
+    is_met = problem.mesh.on_plane.size > 0 and problem.config.contact.enabled
+    return problem.plane_contact(step.start_u) if is_met else None
+
+
 TERMS: Final[list[TermKind]] = [
     TermKind("elasticity", "stored", _elastic),
     TermKind("drag", "dissipative", _drag),
     TermKind("Kelvin-Voigt dissipation", "dissipative", _kelvin_voigt),
     TermKind("resistance to inversion", "contact", _inversion),
     TermKind("contact", "contact", _contact),
+    TermKind("contact with the plane of symmetry", "contact", _plane),
 ]

@@ -11,13 +11,14 @@ from gyrify.energy.axial import AxialElasticEnergy, axial_pattern
 from gyrify.energy.elastic import CellPattern, ElasticEnergy
 from gyrify.energy.kinematics import ElasticKinematics, Simplices
 from gyrify.energy.mean_dilatation import MeanDilatationEnergy, PatchPattern
+from gyrify.energy.plane_contact import FacingPoints
 from gyrify.energy.term import FloatArray, IntArray
 from gyrify.errors import InvertedCellError
 from gyrify.mesh import GREY, Mesh
 from gyrify.mesh.shapes import SolidShape, shape_of
 from gyrify.model.body import Places, growth_of, material_of, parameters_of
 from gyrify.model.meshing import build_mesh
-from gyrify.model.rigid import isostatic_supports
+from gyrify.model.rigid import isostatic_supports, kept_modes, rigid_modes
 
 
 class Tissue:
@@ -119,8 +120,13 @@ class Tissue:
 
     @property
     def is_clamped(self) -> bool:
-        """Whether a part of the body is held."""
-        return self.mesh.clamped.size > 0 and self.config.boundary.clamp != "none"
+        """Whether a hole or a lower side is held."""
+        return self.mesh.clamped.size > 0 and self.config.boundary.clamp == "hole"
+
+    @property
+    def plane_axis(self) -> int:
+        """Axis that a plane of symmetry lies across."""
+        return int(np.argmax(np.abs(self.config.boundary.plane.normal)))
 
     @cached_property
     def supported(self) -> IntArray:
@@ -132,7 +138,10 @@ class Tissue:
         """
         if self.is_clamped:
             return self.free
-        return np.setdiff1d(self.free, isostatic_supports(self.mesh.points), assume_unique=True)
+        modes = rigid_modes(self.mesh.points)
+        if self.mesh.on_plane.size:
+            modes = kept_modes(modes, self.mesh.on_plane * self.mesh.n_dim + self.plane_axis)
+        return np.setdiff1d(self.free, isostatic_supports(modes), assume_unique=True)
 
     @cached_property
     def free(self) -> IntArray:
@@ -140,9 +149,23 @@ class Tissue:
         is_free = np.ones(self.state_shape, dtype=bool)
         if self.is_clamped:
             is_free[self.mesh.clamped] = False
+        if self.mesh.on_plane.size:
+            is_free[self.mesh.on_plane, self.plane_axis] = False
         if self.has_axial_unknown:
             is_free[-1] = (True, False)
         return np.flatnonzero(is_free)
+
+    @property
+    def held(self) -> IntArray:
+        """Degrees of freedom that nothing moves."""
+        return np.setdiff1d(np.arange(int(np.prod(self.state_shape))), self.free, assume_unique=True)
+
+    @cached_property
+    def facing(self) -> FacingPoints:
+        """What of the outer surface faces a plane of symmetry."""
+        mesh, axis = self.mesh, self.plane_axis
+        sign = float(np.sign(self.config.boundary.plane.normal[axis]))
+        return FacingPoints.of(mesh.points, mesh.faces, mesh.on_plane, axis, sign)
 
     @cached_property
     def mean_cortical_edge(self) -> float:

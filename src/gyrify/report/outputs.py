@@ -131,7 +131,9 @@ def _folded_body(history: History, summary: dict[str, Any], title: str, told: st
         f"{gi['area']['hull']:.3f} (hull); {n_gyri} {'gyrus' if n_gyri == 1 else 'gyri'}"
     )
     text = [(title, 9, "bold"), (index, 8, "normal"), (told, 7, "normal")]
-    return space_figure(history.mesh, history.points(), depth=surface.depth, text=text)
+    return space_figure(
+        history.mesh, history.points(), depth=surface.depth[: history.mesh.contour.size], text=text
+    )
 
 
 def onset_picture(history: History, onset: Onset) -> Figure:

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gyrify.mesh import Mesh
-from gyrify.mesh.mesh import FloatArray
+from gyrify.mesh.mesh import FloatArray, IntArray
 from gyrify.metrics import Measures
 from gyrify.metrics.measure import measure_valid
+from gyrify.metrics.mirrored import with_image
 
 if TYPE_CHECKING:
     from gyrify.config.run_sections import Metrics
@@ -37,17 +38,28 @@ def measured(mesh: Mesh, points: FloatArray, chosen: Metrics, *, earlier: bool =
 
 
 def surface_of(mesh: Mesh, points: FloatArray, chosen: Metrics) -> DeformedSurface:
-    """Outer surface and interface of a state in space; parameters as of `measured`."""
+    """Outer surface and interface of a state in space, with their images behind a plane of symmetry.
+
+    Parameters as of `measured`; points of the mesh come first.
+    """
     from gyrify.metrics.measure_surface import DeformedSurface
 
     periods = None if mesh.period is None or mesh.period_y is None else (mesh.period, mesh.period_y)
     return DeformedSurface(
-        points[mesh.contour],
-        np.searchsorted(mesh.contour, mesh.faces),
-        points[mesh.interface],
-        np.searchsorted(mesh.interface, mesh.interface_faces),
+        *_whole(mesh, points, mesh.contour, mesh.faces),
+        *_whole(mesh, points, mesh.interface, mesh.interface_faces),
         chosen.closing_radius,
         chosen.gyrus_prominence,
         periods,
         mesh.points[mesh.contour],
     )
+
+
+def _whole(mesh: Mesh, points: FloatArray, chosen: IntArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
+    """Points and triangles of one of its surfaces, with the image of half a body."""
+    surface = points[chosen], np.searchsorted(chosen, faces)
+    if mesh.on_plane.size == 0:
+        return surface
+    axis = int(np.argmin(np.ptp(mesh.points[mesh.on_plane], axis=0)))
+    rim = np.flatnonzero(np.isin(chosen, mesh.on_plane))
+    return with_image(*surface, rim, axis, float(points[mesh.on_plane, axis].mean()))

@@ -80,7 +80,7 @@ def _measured(history: History, index: int, chosen: Metrics, *, earlier: bool = 
         if mesh.n_dim == 3:
             surface = surface_of(mesh, x, chosen)
             history.known_measures[key] = Measures.of(surface)
-            history.known_measures["depth", number, *lengths] = surface.depth
+            history.known_measures["depth", number, *lengths] = surface.depth[: history.mesh.contour.size]
         else:
             history.known_measures[key] = measured(mesh, x, chosen, earlier=earlier)
     found: Measures = history.known_measures[key]

@@ -112,7 +112,7 @@ def _evaluate(
         scale += abs(start)
         change[kind.role] += end.value - at_start.get(kind.name, start)
     relaxed = _relaxed(problem, span[1], before, after)
-    gradient[problem.mesh.clamped] = 0.0
+    gradient.ravel()[problem.held] = 0.0
     J, J_e = problem.least_volume_ratios(after.u, span[1] * duration)
     power_after = _growth_power(problem, span[1], after.u, after.internal)
     work, work_error = _growth_work(problem, before, after, span, (power, power_after))

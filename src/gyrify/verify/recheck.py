@@ -76,14 +76,16 @@ def verify(run: str | Path) -> Verification:
             checks.append(_check_balance(increments, energy_unit(history.mesh.n_dim)))
         checks += _check_symmetry(history)
     if history.config.contact.enabled:
-        checks += _check_contact(increments, rows, _jumps(history))
+        checks += _check_contact(rows)
+        if history.mesh.n_dim == 2:  # in space no path is straight; see `Slice.is_path_admissible`
+            checks.append(_check_path(increments, _jumps(history)))
     checks += check_metrics(history, folder, rows, summary)
     return Verification(tuple(checks))
 
 
 def _check_states(history: History) -> Check:
     """Every row there, undamaged, in order, finite, clamped where it must be."""
-    mesh, stepping, name = history.mesh, history.slice.stepping, "states"
+    held, stepping, name = history.slice.held, history.slice.stepping, "states"
     position, shape = 0, history.slice.state_shape
     try:
         for number in range(len(history)):
@@ -92,7 +94,7 @@ def _check_states(history: History) -> Check:
                 return Check(name, False, f"Increment {number} is not a finite displacement of this mesh.")
             if number > 0 and (state.span < 1 or state.position != position + state.span):
                 return Check(name, False, f"Increment {number} does not follow the one before it.")
-            if state.u[mesh.clamped].any() or (number == 0 and (state.u.any() or state.position != 0)):
+            if state.u.ravel()[held].any() or (number == 0 and (state.u.any() or state.position != 0)):
                 return Check(name, False, f"Increment {number} moves points that are held.")
             position = state.position
     except HistoryError as error:
@@ -176,22 +178,24 @@ def _jumps(history: History) -> set[int]:
     return left | {number for number, span in spans if history.slice.stepping.is_smallest(span)}
 
 
-def _check_contact(
-    increments: list[Increment], rows: list[dict[str, Any]], jumps: set[int]
-) -> Iterator[Check]:
-    """The contour meets itself nowhere: not in a state, not on the straight path from state to state."""
+def _check_contact(rows: list[dict[str, Any]]) -> Iterator[Check]:
+    """The contour or surface meets itself in no state."""
     crossed = sum(bool(row["self_intersecting"]) for row in rows)
     yield Check(
         "simple contour", crossed == 0, f"{crossed} of {len(rows)} contours cross themselves.", crossed, 0.0
     )
     gaps = [float(row["min_gap_mm"]) for row in rows]
     yield _above_zero("gap", gaps, "The smallest gap [mm]", first=0)
+
+
+def _check_path(increments: list[Increment], jumps: set[int]) -> Check:
+    """The contour meets itself nowhere on the straight path from state to state."""
     # A jump is a descent of many steps, each free of collisions: the straight path may yet cross.
     straight = [increment for number, increment in enumerate(increments, 1) if number not in jumps]
     crossing = sum(not increment.is_path_free for increment in straight)
     sentence = f"{crossing} of {len(straight)} straight paths between states cross the contour"
     sentence += f"; {len(increments) - len(straight)} jumps are not straight." if jumps else "."
-    yield Check("path", crossing == 0, sentence, float(crossing), 0.0)
+    return Check("path", crossing == 0, sentence, float(crossing), 0.0)
 
 
 def _at_most(name: str, values: list[float], bound: float, what: str) -> Check:

@@ -112,11 +112,11 @@ def _read(path: str, unit: str, _digest: str, key: str) -> TriangleSurface:
     name = f"geometry.{key} ({Path(path).name})"
     used = points[np.unique(triangles)]
     if np.isfinite(used).all():
-        _require_size(float(np.ptp(used, axis=0).max()), unit, name)
+        require_size(float(np.ptp(used, axis=0).max()), unit, name)
     return closed_surface(points, triangles, name)
 
 
-def _require_size(size: float, unit: str, name: str) -> None:
+def require_size(size: float, unit: str, name: str) -> None:
     """A size that no body has comes from a wrong unit."""
     if SMALLEST <= size <= LARGEST:
         return

@@ -52,7 +52,7 @@ class TriangleSurface:
     @property
     def volume(self) -> float:
         """Inside all parts [mm^3]."""
-        return float(_volumes(self.points, self.triangles, self.part).sum())
+        return float(volumes_of_parts(self.points, self.triangles, self.part).sum())
 
     @property
     def area(self) -> float:
@@ -120,13 +120,13 @@ def closed_surface(points: FloatArray, triangles: IntArray, name: str) -> Triang
             "Save it again from the program that made it.",
         )
     points, triangles, source, notes = _cleaned(points, triangles, name)
-    _require_two_at_each_edge(points, triangles, name)
+    require_two_at_each_edge(points, triangles, name)
     turned = topology.oriented(triangles)
     if turned is None:
         raise MeshError(f"{name} has no inside: it has one side only, like a Klein bottle.", "Repair it.")
     triangles, n_turned = turned
     part = topology.parts_of(triangles)
-    volumes = _volumes(points, triangles, part)
+    volumes = volumes_of_parts(points, triangles, part)
     inverted = volumes < 0.0
     triangles = np.where(inverted[part][:, None], triangles[:, ::-1], triangles)
     if n_turned:
@@ -167,7 +167,7 @@ def _cleaned(
     return points[used], triangles, used.astype(np.int64), notes
 
 
-def _require_two_at_each_edge(points: FloatArray, triangles: IntArray, name: str) -> None:
+def require_two_at_each_edge(points: FloatArray, triangles: IntArray, name: str) -> None:
     edges, number = topology.edges_of(triangles)
     counts = np.bincount(number)
     border, many = np.flatnonzero(counts == 1), np.flatnonzero(counts > 2)
@@ -221,7 +221,7 @@ def _require_shape(surface: TriangleSurface, volumes: FloatArray, name: str) -> 
                 )
 
 
-def _volumes(points: FloatArray, triangles: IntArray, part: IntArray) -> FloatArray:
+def volumes_of_parts(points: FloatArray, triangles: IntArray, part: IntArray) -> FloatArray:
     """Signed volume inside each part [mm^3], about the middle of all."""
     corners = points[triangles] - points.mean(axis=0)
     own = np.einsum("ni,ni->n", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0

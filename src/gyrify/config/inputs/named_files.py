@@ -18,7 +18,10 @@ FOLDER: Final = "inputs"
 # What the mesh beside them is called.
 MESH: Final = "mesh.npz"
 # Ends of names that copies keep, for they tell the format.
-SUFFIXES: Final = (".stl", ".ply", ".off", ".obj", ".gii")
+SUFFIXES: Final = (
+    *(".stl", ".ply", ".off", ".obj", ".gii"),
+    *(".mesh", ".vtk", ".vtu", ".msh", ".inp", ".nas", ".bdf", ".su2", ".avs"),
+)
 # Larger files describe no surface that can be meshed.
 MOST_BYTES: Final = 500_000_000
 

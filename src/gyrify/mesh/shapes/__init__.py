@@ -12,6 +12,7 @@ from gyrify.mesh.shapes.shape import Shape
 from gyrify.mesh.shapes.solid import SolidShape
 from gyrify.mesh.shapes.strip import PeriodicStrip
 from gyrify.mesh.shapes.surface_body import SurfaceBody
+from gyrify.mesh.shapes.volume_body import VolumeBody
 
 __all__ = [
     "SHAPES",
@@ -22,8 +23,11 @@ __all__ = [
     "Shape",
     "SolidShape",
     "SurfaceBody",
+    "VolumeBody",
     "shape_of",
 ]
+
+AnyShape = Shape | SolidShape | SurfaceBody | VolumeBody
 
 
 def _ellipse(geometry: Any) -> Ellipse:
@@ -54,8 +58,15 @@ def _surface(geometry: Any) -> SurfaceBody:
     )
 
 
+def _volume(geometry: Any) -> VolumeBody:
+    volume = geometry.volume
+    return VolumeBody(
+        volume.points, volume.cells, volume.grey, geometry.cortical_thickness, geometry.mean_radius
+    )
+
+
 # By the value of ``geometry.shape``: what makes the shape of that section of a configuration.
-SHAPES: Final[dict[str, Callable[[Any], Shape | SolidShape | SurfaceBody]]] = {
+SHAPES: Final[dict[str, Callable[[Any], AnyShape]]] = {
     "ellipse": _ellipse,
     "circle": _ellipse,
     "strip": _strip,
@@ -63,10 +74,11 @@ SHAPES: Final[dict[str, Callable[[Any], Shape | SolidShape | SurfaceBody]]] = {
     "ellipsoid": _ellipsoid,
     "patch": _patch,
     "surface": _surface,
+    "volume": _volume,
 }
 
 
-def shape_of(geometry: Any) -> Shape | SolidShape | SurfaceBody:
+def shape_of(geometry: Any) -> AnyShape:
     """The shape of a section ``geometry`` of a configuration.
 
     Raises

@@ -1,4 +1,4 @@
-"""What was repaired of a surface from a file, and where its cortex is thinner than asked for."""
+"""What was repaired of a body from a file, and what its mesh could not do."""
 
 from __future__ import annotations
 
@@ -11,13 +11,15 @@ if TYPE_CHECKING:
 
 
 def surface_notes(config: Config) -> list[str]:
-    """Warn of repairs, and of what the mesh of a surface could not do."""
+    """Warn of repairs, and of what the mesh could not do."""
     geometry = config.geometry
     if geometry.shape not in FROM_FILES:
         return []
     from gyrify.model.kept_mesh import mesh_inside
 
     found = []
+    if geometry.shape == "volume" and geometry.volume.notes:
+        found.append(f"The volume of geometry.file was repaired: {'; '.join(geometry.volume.notes)}.")
     for key, surface in (("file", geometry.surface), ("hole_file", geometry.hole_surface)):
         if surface is not None and surface.notes:
             found.append(

@@ -1,0 +1,217 @@
+"""The mesh of given tetrahedra: their boundaries told apart, and their depth below the outer one."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from gyrify.base.places import place
+from gyrify.errors import MeshError
+from gyrify.mesh.cell_clusters import edge_clusters
+from gyrify.mesh.mesh import GREY, WHITE, FloatArray, IntArray, Mesh
+from gyrify.mesh.offset_surface import angle_normals
+from gyrify.mesh.quality import LOWEST_QUALITY, tetrahedron_quality
+from gyrify.mesh.shapes.volume_body import VolumeBody
+from gyrify.metrics.surface import enclosed_volume
+from gyrify.metrics.surface_pairs import crossings, distances_to
+from gyrify.metrics.tetrahedra import boundary_faces, faces_between, signed_volumes
+
+_EDGES: Final = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
+# The eight parts of a tetrahedron with corners 0 to 3 and middles 4 to 9 of its edges: four at the corners,
+# and four about one of the three diagonals of the octahedron between them.
+_AT_CORNERS: Final = np.array([[0, 4, 5, 6], [4, 1, 7, 8], [5, 7, 2, 9], [6, 8, 9, 3]])
+_DIAGONALS: Final = np.array([[4, 9], [5, 8], [6, 7]])
+_AROUND: Final = np.array([[5, 7, 8, 6], [4, 6, 9, 7], [4, 5, 9, 8]])
+# Points this near to the plane of symmetry over the size of the body lie in it.
+_IN_PLANE: Final = 1e-6
+# The least quality of a cell: below, it is all but flat.
+_FLATTEST: Final = 1e-4
+# A cortex whose mean thickness differs from T by more than this is told.
+_OTHER: Final = 0.2
+
+
+def volume_mesh(body: VolumeBody, refine: int = 0) -> Mesh:
+    """Mesh of a body of given tetrahedra.
+
+    Parameters
+    ----------
+    body : VolumeBody
+        The body.
+    refine : int
+        Times that each tetrahedron is cut into eight.
+
+    Returns
+    -------
+    Mesh
+        Each cell with its depth below the outer surface; the same bytes each time.
+
+    Raises
+    ------
+    MeshError
+        If the outer surface crosses itself, no tissue is left of one kind, or a cell is all but flat.
+    """
+    points, cells, grey = body.points, body.cells, body.grey
+    for _ in range(refine):
+        points, cells = _eighths(points, cells)
+        grey = None if grey is None else np.tile(grey, 8)
+    faces, clamped, on_plane = _sides(points, cells, body)
+    contour = np.unique(faces)
+    _require_no_crossing(points, faces)
+    T, below = body.cortical_thickness, distances_to(points, points[faces])
+    below[contour] = 0.0
+    is_grey = below[cells].mean(axis=1) < T if grey is None else grey
+    interface_faces = _interface(cells, is_grey, T, points)
+    return Mesh(
+        points=points,
+        cells=cells,
+        region=np.where(is_grey, GREY, WHITE).astype(np.int8),
+        contour=contour,
+        interface=np.unique(interface_faces),
+        clamped=clamped,
+        across=_across(points, cells, contour, faces),
+        patch=edge_clusters(points, cells),
+        depth=np.where(below < T, 2.0 - below / T, np.maximum(1.0 - (below - T) / body.wall[0], 0.0)),
+        faces=faces,
+        interface_faces=interface_faces,
+        notes=_notes(points, cells, below[np.unique(interface_faces)], body),
+        on_plane=on_plane,
+    )
+
+
+def _eighths(points: FloatArray, cells: IntArray) -> tuple[FloatArray, IntArray]:
+    """Each tetrahedron cut into eight; the octahedron within along its shortest diagonal (Bey 1995)."""
+    sides = np.sort(cells[:, _EDGES].reshape(-1, 2), axis=1)
+    edges, number = np.unique(sides, axis=0, return_inverse=True)
+    finer = np.concatenate([points, points[edges].mean(axis=1)])
+    ten = np.concatenate([cells, points.shape[0] + number.reshape(-1, 6)], axis=1)
+    ends = finer[ten[:, _DIAGONALS]]
+    chosen = np.argmin(np.round(np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2), 12), axis=1)
+    parts = [ten[:, corners] for corners in _AT_CORNERS]
+    ends_of, around = (
+        np.take_along_axis(ten, _DIAGONALS[chosen], 1),
+        np.take_along_axis(ten, _AROUND[chosen], 1),
+    )
+    for k in range(4):
+        parts.append(np.stack([ends_of[:, 0], ends_of[:, 1], around[:, k], around[:, (k + 1) % 4]], axis=1))
+    every = np.concatenate(parts)
+    inverted = signed_volumes(finer[every]) < 0.0
+    every[inverted, 2], every[inverted, 3] = every[inverted, 3].copy(), every[inverted, 2].copy()
+    return finer, every
+
+
+def _sides(points: FloatArray, cells: IntArray, body: VolumeBody) -> tuple[IntArray, IntArray, IntArray]:
+    """Triangles of the outer surface; points of holes; points in the plane of symmetry."""
+    faces, in_plane = boundary_faces(cells), np.zeros(points.shape[0], dtype=bool)
+    if body.plane is not None:
+        in_plane = _in_plane(points, *body.plane)
+        faces = faces[~in_plane[faces].all(axis=1)]
+    part = _parts(faces, points.shape[0])
+    is_outer = np.zeros(part.max() + 1, dtype=bool)
+    size = np.zeros(part.max() + 1)
+    for k in range(part.max() + 1):
+        own = faces[part == k]
+        size[k] = np.ptp(points[own].reshape(-1, 3), axis=0).max()
+        is_outer[k] = not in_plane[own].any() and enclosed_volume(points[own] - points[own[0, 0]]) > 0.0
+    touching = [k for k in range(part.max() + 1) if in_plane[faces[part == k]].any()]
+    if touching:  # what a plane cuts open has no inside; the largest is the outer surface
+        is_outer[touching[int(np.argmax(size[touching]))]] = True
+    outer = is_outer[part]
+    return faces[outer], np.unique(faces[~outer]), np.flatnonzero(in_plane)
+
+
+def _in_plane(points: FloatArray, point: FloatArray, normal: FloatArray) -> NDArray[np.bool_]:
+    height = (points - point) @ normal
+    size = float(np.ptp(points, axis=0).max())
+    inside = np.abs(height) <= _IN_PLANE * size
+    highest = int(np.argmax(height))
+    if height[highest] > _IN_PLANE * size:
+        raise MeshError(
+            f"The body lies on both sides of boundary.plane: {place(points[highest])} is "
+            f"{height[highest]:.3g} mm beyond it.",
+            "Give a point and a normal that points out of the body, or cut the body there.",
+        )
+    if np.count_nonzero(inside) < 3:
+        raise MeshError(
+            f"The body has no face in boundary.plane: its nearest point, {place(points[highest])}, is "
+            f"{-height[highest]:.3g} mm away.",
+            "Give a point of the flat side of the body, in mm.",
+        )
+    return np.asarray(inside)
+
+
+def _parts(faces: IntArray, n_points: int) -> IntArray:
+    """(n,) connected part of each triangle."""
+    a, b = faces[:, [0, 1]].ravel(), faces[:, [1, 2]].ravel()
+    _, label = connected_components(
+        coo_array((np.ones(a.size), (a, b)), shape=(n_points, n_points)), directed=False
+    )
+    return np.asarray(np.unique(label[faces[:, 0]], return_inverse=True)[1], dtype=np.int64)
+
+
+def _require_no_crossing(points: FloatArray, faces: IntArray) -> None:
+    edges, hit = crossings(points, faces)
+    if hit.size:
+        raise MeshError(
+            f"The outside of the volume crosses itself: {hit.size} edges pass through triangles, first at "
+            f"{place(points[edges[0]].mean(axis=0))}.",
+            "Repair it there in the program that it comes from.",
+        )
+
+
+def _interface(cells: IntArray, is_grey: NDArray[np.bool_], T: float, points: FloatArray) -> IntArray:
+    faces = faces_between(cells, ~is_grey)
+    if faces.size:
+        return faces
+    edges = points[cells[:, _EDGES]]
+    mean = float(np.linalg.norm(edges[:, :, 1] - edges[:, :, 0], axis=2).mean())
+    tissue = "white" if is_grey.all() else "grey"
+    raise MeshError(
+        f"No tetrahedron of the volume is {tissue} matter: none has its middle "
+        f"{'below' if tissue == 'white' else 'within'} geometry.cortical_thickness = {T:g} mm; edges are "
+        f"{mean:.3g} mm long.",
+        "Give another geometry.cortical_thickness or geometry.unit, or set mesh.refine = 1.",
+    )
+
+
+def _across(points: FloatArray, cells: IntArray, contour: IntArray, faces: IntArray) -> FloatArray:
+    """(n_cells, 3) mean of the normals at the points of the outer surface that are nearest to the corners."""
+    normals = angle_normals(points[contour], np.searchsorted(contour, faces))
+    _, nearest = cKDTree(points[contour]).query(points)
+    mean = normals[nearest][cells].sum(axis=1)
+    size = np.linalg.norm(mean, axis=1, keepdims=True)
+    return np.asarray(np.where(size > 1e-9, mean / np.maximum(size, 1e-9), [0.0, 0.0, 1.0]))
+
+
+def _notes(points: FloatArray, cells: IntArray, depths: FloatArray, body: VolumeBody) -> tuple[str, ...]:
+    """What of given tetrahedra makes a run less than it could be."""
+    notes, T = [], body.cortical_thickness
+    quality = tetrahedron_quality(points[cells])
+    worst, n_slivers = int(np.argmin(quality)), np.count_nonzero(quality < LOWEST_QUALITY)
+    where = place(points[cells[worst]].mean(axis=0))
+    if not quality[worst] >= _FLATTEST:
+        raise MeshError(
+            f"The volume has a tetrahedron that is all but flat, at {where}.",
+            "Mesh the body anew in the program that it comes from.",
+        )
+    if n_slivers:
+        notes.append(
+            f"{n_slivers} tetrahedra of the volume are slivers (quality below {LOWEST_QUALITY:g}, down to "
+            f"{quality[worst]:.2g} at {where}): they are stiff, and cost iterations."
+        )
+    if body.grey is None:
+        notes.append(
+            "The volume has no labels: a tetrahedron is grey matter where its corners are less than T deep "
+            f"on average, so that the interface is rough, {depths.min():.2g} to {depths.max():.2g} mm deep."
+        )
+    elif abs(depths.mean() - T) > _OTHER * T:
+        notes.append(
+            f"The grey matter of the volume is {depths.mean():.3g} mm thick on average, and "
+            f"geometry.cortical_thickness is {T:g} mm: give that, for lengths of contact and of pictures "
+            "follow it."
+        )
+    return tuple(notes)
