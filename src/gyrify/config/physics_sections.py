@@ -133,6 +133,11 @@ class Boundary(Section):
         "Plane of symmetry: a point on it [mm], and its normal, along an axis and out of the body.",
     )
 
+    @property
+    def whole(self) -> float:
+        """Mean radius of the whole body over that of what is given [-]: half a one ends in a plane."""
+        return 2.0 ** (1.0 / 3.0) if self.clamp == "plane" else 1.0
+
 
 class Contact(Section):
     """Self-contact of the outer contour or surface."""

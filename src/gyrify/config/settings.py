@@ -72,7 +72,7 @@ class Config(Section):
     @model_validator(mode="after")
     def _fit_to_the_body(self) -> Config:
         """Lengths of measuring that are not given scale with the body, also under later overrides."""
-        self.__dict__["metrics"] = self.metrics.scaled(self.geometry.scale)
+        self.__dict__["metrics"] = self.metrics.scaled(self.geometry.scale * self.boundary.whole)
         return self
 
     @model_validator(mode="after")

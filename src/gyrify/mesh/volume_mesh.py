@@ -73,7 +73,7 @@ def volume_mesh(body: VolumeBody, refine: int = 0) -> Mesh:
         contour=contour,
         interface=np.unique(interface_faces),
         clamped=clamped,
-        across=_across(points, cells, contour, faces),
+        across=_across(points, cells, contour, faces, on_plane),
         patch=edge_clusters(points, cells),
         depth=np.where(below < T, 2.0 - below / T, np.maximum(1.0 - (below - T) / body.wall[0], 0.0)),
         faces=faces,
@@ -178,11 +178,20 @@ def _interface(cells: IntArray, is_grey: NDArray[np.bool_], T: float, points: Fl
     )
 
 
-def _across(points: FloatArray, cells: IntArray, contour: IntArray, faces: IntArray) -> FloatArray:
-    """(n_cells, 3) mean of the normals at the points of the outer surface that are nearest to the corners."""
+def _across(
+    points: FloatArray, cells: IntArray, contour: IntArray, faces: IntArray, on_plane: IntArray
+) -> FloatArray:
+    """(n_cells, 3) mean of the normals at the points of the outer surface that are nearest to the corners.
+
+    In a plane of symmetry they lie in it, as they do with the other half.
+    """
     normals = angle_normals(points[contour], np.searchsorted(contour, faces))
     _, nearest = cKDTree(points[contour]).query(points)
-    mean = normals[nearest][cells].sum(axis=1)
+    at_points = normals[nearest]
+    if on_plane.size:
+        at_points[on_plane, int(np.argmin(np.ptp(points[on_plane], axis=0)))] = 0.0
+        at_points /= np.maximum(np.linalg.norm(at_points, axis=1, keepdims=True), 1e-9)
+    mean = at_points[cells].sum(axis=1)
     size = np.linalg.norm(mean, axis=1, keepdims=True)
     return np.asarray(np.where(size > 1e-9, mean / np.maximum(size, 1e-9), [0.0, 0.0, 1.0]))
 

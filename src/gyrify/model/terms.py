@@ -87,7 +87,8 @@ def _drag(step: GrowthStep) -> EnergyTerm | None:
     problem = step.problem
     if problem.config.dissipation.kind != "drag" or problem.is_conservative:
         return None
-    coefficient = _rate(step) / problem.config.geometry.drag_length**2
+    length = problem.config.geometry.drag_length * problem.config.boundary.whole
+    coefficient = _rate(step) / length**2
     return DragEnergy(coefficient, problem.lumped_area, step.start_u)
 
 
