@@ -155,3 +155,9 @@ def write_tetrahedron(folder: Path, n_faces: int = 4) -> None:
         text += ["endloop", "endfacet"]
     for name in ("surface.stl", "brain.stl"):
         (folder / name).write_text("\n".join([*text, "endsolid"]) + "\n")
+
+
+def write_cell(folder: Path, share: float = 1.0) -> None:
+    """Write a tetrahedron with edges of 28 mm as brain.mesh, or a part of that file."""
+    text = "4\n10 10 10\n10 -10 -10\n-10 10 -10\n-10 -10 10\n1\n1 1 2 3 4\n"
+    (folder / "brain.mesh").write_text(text[: int(share * len(text))])

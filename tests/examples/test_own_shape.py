@@ -53,7 +53,7 @@ def test_a_run_of_it_is_read_back_and_verifies(module, tiny: Config, tmp_path: P
 def test_a_shape_that_is_not_there_is_refused_with_those_that_are() -> None:
     with pytest.raises(
         ConfigError,
-        match=r'geometry\.shape = "elipse" .* "ellipse", "circle", .*"patch" or "surface"',
+        match=r'geometry\.shape = "elipse" .* "ellipse", "circle", .*"surface" or "volume"',
     ) as told:
         Config().with_overrides({"geometry.shape": "elipse"})
     assert 'Did you mean "ellipse"?' in str(told.value)

@@ -11,6 +11,7 @@ import pytest
 from gyrify.config import Config, Contact, Geometry, Growth, Material
 from gyrify.config.reference import page
 from gyrify.config.rows import rows
+from gyrify.config.tables import Labels, Plane
 from gyrify.errors import ConfigError
 
 DEFAULTS: dict[str, Any] = {
@@ -20,7 +21,7 @@ DEFAULTS: dict[str, Any] = {
     "geometry.length": 40.0, "geometry.depth": 18.0, "geometry.width": 40.0,
     "geometry.semi_axes": (39.4, 32.9, 32.9), "mesh.edge_length": 0.0,
     "geometry.file": "", "geometry.hole_file": "", "geometry.interface_file": "",
-    "geometry.unit": "mm", "geometry.digest": "",
+    "geometry.unit": "mm", "geometry.labels": Labels(), "geometry.digest": "",
     "mesh.n_around": 216, "mesh.n_layers": 17, "mesh.n_cortex_layers": 6, "mesh.grading": "geometric",
     "mesh.split": "alternating", "mesh.node_jitter": 1e-3, "mesh.element": "linear",
     "mesh.inversion_resistance": 0.0, "mesh.refine": 0, "mesh.refine_cortex": 0,
@@ -30,7 +31,7 @@ DEFAULTS: dict[str, Any] = {
     "growth.rate": 0.002, "growth.ratio": 3.6, "growth.duration": 500.0, "growth.out_of_plane": "blocked",
     "growth.out_of_plane_exponent": 1.0,
     "growth.stretch": "linear", "growth.energy_per": "grown", "growth.law": "isotropic",
-    "growth.profile": "sharp", "growth.transition": 0.0, "boundary.clamp": "hole",
+    "growth.profile": "sharp", "growth.transition": 0.0, "boundary.clamp": "hole", "boundary.plane": Plane(),
     "contact.enabled": True, "contact.activation_fraction": 0.0667, "contact.barrier_stiffness": "auto",
     "dissipation.kind": "drag", "dissipation.number": 1.3, "dissipation.course": "constant",
     "solver.increments": 100, "solver.min_increment": 1e-6, "solver.tolerance": 1e-6,
@@ -41,7 +42,7 @@ DEFAULTS: dict[str, Any] = {
 }  # fmt: skip
 
 CHOICES = {
-    "geometry.shape": ["ellipse", "circle", "strip", "sphere", "ellipsoid", "patch", "surface"],
+    "geometry.shape": ["ellipse", "circle", "strip", "sphere", "ellipsoid", "patch", "surface", "volume"],
     "mesh.grading": ["geometric", "uniform"],
     "mesh.split": ["alternating", "one", "random"],
     "mesh.element": ["linear", "quadratic", "mean_dilatation"],
@@ -51,7 +52,7 @@ CHOICES = {
     "growth.energy_per": ["grown", "reference"],
     "growth.law": ["isotropic", "tangential", "area"],
     "growth.profile": ["sharp", "sigmoid"],
-    "boundary.clamp": ["hole", "none"],
+    "boundary.clamp": ["hole", "none", "plane"],
     "dissipation.kind": ["drag", "kelvin_voigt", "none"],
     "solver.regularisation": ["shift", "projection"],
     "solver.linear_solver": ["auto", "pardiso", "superlu", "cg"],
@@ -165,7 +166,11 @@ def test_counts_are_whole(key: str, value: object) -> None:
 
 @pytest.mark.parametrize(("key", "value"), [(k, v) for k, values in CHOICES.items() for v in values])
 def test_choice_is_allowed(key: str, value: object) -> None:
-    if (key, value) == ("geometry.shape", "surface"):  # what is read from a file needs one
+    if (key, value) == ("boundary.clamp", "plane"):  # half a body is read from a file
+        with pytest.raises(ConfigError, match=r'Try geometry\.shape = "volume"'):
+            Config().replace(**{key: value})
+        return
+    if key == "geometry.shape" and value in ("surface", "volume"):  # what is read from a file needs one
         with pytest.raises(ConfigError, match=r"not allowed without geometry\.file"):
             Config().replace(**{key: value})
         return

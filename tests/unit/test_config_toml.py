@@ -214,8 +214,9 @@ def changed(value: Any, key: str) -> Any:
     return value + 1 if isinstance(value, int) else value * 1.01 + (value == 0)
 
 
-# Keys that go with files; tests/space/test_surface_files.py sees to them.
-OF_FILES = {f"geometry.{key}" for key in ("file", "hole_file", "interface_file", "unit", "digest")}
+# Keys that go with files; tests/space (test_surface_files, test_volumes, test_half_bodies) sees to them.
+OF_FILES = {f"geometry.{key}" for key in ("file", "hole_file", "interface_file", "unit", "labels", "digest")}
+OF_FILES |= {"boundary.plane"}
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from gyrify.config.faults import sections
-from gyrify.config.words import allowed, extra
+from gyrify.config.words import allowed, extra, show
 
 if TYPE_CHECKING:
     from gyrify.config.settings import Config
@@ -97,6 +97,8 @@ def _row(prefix: str, name: str, group: BaseModel, followed: BaseModel, field: F
 
 def plain(value: object) -> str:
     """Return a value for people: words without quotes, lists with commas."""
+    if isinstance(value, BaseModel):
+        return show(value)
     if isinstance(value, list | tuple):
         return ", ".join(plain(item) for item in value)
     return str(value).lower() if isinstance(value, bool) else str(value)

@@ -28,6 +28,8 @@ def show(value: object) -> str:
         return str(value).lower()
     if isinstance(value, str):
         return f'"{shorten(value)}"'
+    if isinstance(value, BaseModel):
+        return "{" + ", ".join(f"{key} = {show(item)}" for key, item in value) + "}"
     if isinstance(value, Mapping):
         return "a table"
     if isinstance(value, list | tuple):
