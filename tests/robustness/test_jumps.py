@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -15,14 +14,13 @@ from gyrify.solve.increment import Increments
 from gyrify.solve.problem import State
 from gyrify.solve.result import Result, Solution
 from gyrify.verify import verify
-from gyrify.verify.recheck import _check_contact
+from gyrify.verify.recheck import _check_path
 
 FINE = Increment(0.0, 0.0, 0.0, 1.0, 1.0, 0, 0, True, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-ROWS: list[dict[str, Any]] = [{"self_intersecting": False, "min_gap_mm": 1.0}] * 3
 
 
 def path_check(increments: list[Increment], jumps: set[int]) -> tuple[bool, str]:
-    (found,) = (check for check in _check_contact(increments, ROWS, jumps) if check.name == "path")
+    found = _check_path(increments, jumps)
     return found.passed, found.sentence
 
 

@@ -11,7 +11,7 @@ import pytest
 from gyrify.config import Config, Contact, Geometry, Growth, Material
 from gyrify.config.reference import page
 from gyrify.config.rows import rows
-from gyrify.config.tables import Labels, Plane
+from gyrify.config.small_tables import Labels, Plane
 from gyrify.errors import ConfigError
 
 DEFAULTS: dict[str, Any] = {

@@ -14,7 +14,14 @@ from gyrify.run.reevaluation import Increment
 from gyrify.solve.newton import Criterion
 from gyrify.solve.problem import TICKS, Stepping
 from gyrify.verify.metrics import LATER_KEYS, WORDED, _comparable, _differences
-from gyrify.verify.recheck import _check_balance, _check_contact, _check_forces, _check_volumes, _jumps
+from gyrify.verify.recheck import (
+    _check_balance,
+    _check_contact,
+    _check_forces,
+    _check_path,
+    _check_volumes,
+    _jumps,
+)
 from gyrify.verify.verification import Check
 
 TOLERANCE = 1e-3
@@ -83,23 +90,33 @@ def test_what_one_increment_loses_makes_up_for_nothing_that_another_creates() ->
     assert not _check_balance([less, more], "uJ/mm").passed
 
 
+def test_what_cannot_be_checked_is_left_out_and_told() -> None:
+    """An increment whose work is not known must not let the others create energy."""
+    lost = replace(FINE, stored=1e9, work=1.0, work_error=np.inf)
+    more = replace(FINE, stored=90.0)
+    found = _check_balance([lost, more], "uJ/mm")
+    assert not found.passed
+    assert "1 increments are left out" in found.sentence
+    assert "Not checked" in _check_balance([lost], "uJ/mm").sentence
+
+
 ROW: dict[str, Any] = {"self_intersecting": False, "min_gap_mm": 0.1}
 
 
 @pytest.mark.parametrize("number", [0, 1, 2])
 def test_a_single_contour_that_crosses_itself_is_too_many(number: int) -> None:
     rows = [ROW | ({"self_intersecting": True} if k == number else {}) for k in range(3)]
-    checks = {check.name: check.passed for check in _check_contact([FINE, FINE], rows, set())}
-    assert checks == {"simple contour": False, "gap": True, "path": True}
+    checks = {check.name: check.passed for check in _check_contact(rows)}
+    assert checks == {"simple contour": False, "gap": True}
     closed = [ROW | ({"min_gap_mm": 0.0} if k == number else {}) for k in range(3)]
-    checks = {check.name: check.passed for check in _check_contact([FINE, FINE], closed, set())}
-    assert checks == {"simple contour": True, "gap": False, "path": True}
+    checks = {check.name: check.passed for check in _check_contact(closed)}
+    assert checks == {"simple contour": True, "gap": False}
 
 
 def test_a_single_path_that_crosses_is_too_many() -> None:
     increments = [FINE, replace(FINE, is_path_free=False)]
-    checks = {check.name: check.passed for check in _check_contact(increments, [ROW] * 3, set())}
-    assert checks == {"simple contour": True, "gap": True, "path": False}
+    assert not _check_path(increments, set()).passed
+    assert _check_path(increments, {2}).passed
 
 
 def test_a_jump_is_an_increment_that_left_an_unstable_state_or_could_not_be_smaller() -> None:

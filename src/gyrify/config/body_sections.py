@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from gyrify.config.base import Section, setting
 from gyrify.config.inputs.named_files import FILE_KEYS, digest
 from gyrify.config.registered import Registered
-from gyrify.config.tables import Labels
+from gyrify.config.small_tables import Labels
 from gyrify.errors import ConfigError
 
 if TYPE_CHECKING:

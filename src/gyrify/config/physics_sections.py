@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from gyrify.config.base import Section, setting
 from gyrify.config.body_sections import PAPER
 from gyrify.config.registered import Registered
-from gyrify.config.tables import Plane
+from gyrify.config.small_tables import Plane
 
 Law = Annotated[
     str,

@@ -39,7 +39,8 @@ Lengths are in mm, stresses in Pa, growth time in the units of the source.
   ([Bodies in space](space.md)) is refused there when it is not the default.
 - `metrics.closing_radius` and `metrics.gyrus_prominence` scale with the body when they are not given. The
   scale of a body is its mean radius over that of the standard slice, √(`geometry.area` / 4069 mm²), for
-  ellipse and circle, ∛(abc) / 35.99 mm for sphere and ellipsoid (of equal volume for a surface or a volume, of the whole body for half a one); for a
+  ellipse and circle, ∛(abc) / 35.99 mm for sphere and ellipsoid (of equal volume for a surface or a
+  volume, of the whole body for half a one); for a
   strip or a patch, whose folds have no other length, `geometry.cortical_thickness` / 1.5 mm.
   The standard slice has 10 mm and 0.3 mm. The same brain in another unit of length so has the same indices.
   A stored `config.toml` states every number: a stored run keeps the lengths that it was measured with.

@@ -217,7 +217,12 @@ def _above_zero(
 
 def _check_balance(increments: list[Increment], unit: str) -> Check:
     """Work of growth against the energies that it went into."""
-    work = math.fsum(abs(i.work) for i in increments)
+    known = [i for i in increments if math.isfinite(i.work_error)]
+    left_out = len(increments) - len(known)
+    why = "halfway on the straight path to their ends a cell is inverted, and the work of growth has no value"
+    if increments and not known:
+        return Check("energy balance", True, f"Not checked in any increment: {why}.", 0.0, ENERGY_BOUND)
+    increments, work = known, math.fsum(abs(i.work) for i in known)
     if work == 0.0:
         return Check("energy balance", True, "Nothing has grown.", 0.0, ENERGY_BOUND)
     shares = {
@@ -234,4 +239,6 @@ def _check_balance(increments: list[Increment], unit: str) -> Check:
         f"create {created:.2%} and lose {lost:.2%} (error of the work {shares['work_error']:.2g}, allowed to "
         f"create {bound:.2g})."
     )
+    if left_out:
+        sentence += f" {left_out} increments are left out: {why}."
     return Check("energy balance", created <= bound, sentence, created, bound)

@@ -21,7 +21,7 @@ from gyrify.config.inputs.closed_surface import (
 )
 from gyrify.config.inputs.named_files import content
 from gyrify.config.inputs.volume_readers import FloatArray, IntArray, read_tetrahedra
-from gyrify.config.tables import Labels
+from gyrify.config.small_tables import Labels
 from gyrify.errors import ConfigError, MeshError
 from gyrify.metrics.tetrahedra import boundary_faces, faces_by_cells, signed_volumes
 
