@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from gyrify.errors import SolveError
 from gyrify.run.onset.crossing import limit_point
 from gyrify.run.onset.onset_search import OnsetSearch
 
@@ -36,3 +37,22 @@ def test_a_branch_that_is_unstable_at_its_end_has_crossed_and_not_turned_back() 
     assert told == [(unstable, 0)]
     assert search._n_negative == 2
     assert search.onset is None
+
+
+@pytest.mark.parametrize("fault", ["modes", "state"])
+def test_modes_that_are_not_found_are_no_end_of_the_branch(fault: str) -> None:
+    """A solver that gives up at a state tells nothing of the states beyond it."""
+
+    def fails(*_: object) -> object:
+        raise SolveError("not found", "")
+
+    state = SimpleNamespace(is_folded=False, tangent=fails)
+    search, told = object.__new__(OnsetSearch), []
+    vars(search).update(
+        _branch=SimpleNamespace(at=fails if fault == "state" else lambda *_: state),
+        _lowest=SimpleNamespace(system=None), _last=SimpleNamespace(fraction=0.2), _duration=500.0,
+        _mesh=SimpleNamespace(n_dim=3), _n_negative=0, onset=None, _end_at_limit_point=told.append,
+    )  # fmt: skip
+    search._look(0.25)
+    assert search.lost_at == 100.0
+    assert told == ([0.25] if fault == "state" else [])

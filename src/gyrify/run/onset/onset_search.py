@@ -85,10 +85,12 @@ class OnsetSearch:
 
     def _look(self, fraction: float) -> None:
         halvings = _HALVINGS if self._n_negative == 0 else _HALVINGS_UNSTABLE
+        has_ended = True
         try:
             state = self._branch.at(fraction, halvings)
             if state.is_folded:
                 raise SolveError("The smooth branch has folded.", "")
+            has_ended = False  # modes that are not found say nothing of the branch
             tangent = state.tangent(self._lowest.system)
             before, self._n_negative = self._n_negative, tangent.n_negative
             if before != self._n_negative:
@@ -96,7 +98,7 @@ class OnsetSearch:
             self._last = state
         except SolveError:
             self.lost_at = self._last.fraction * self._duration
-            if self.onset is None and self._n_negative == 0 and self._mesh.n_dim == 3:
+            if has_ended and self.onset is None and self._n_negative == 0 and self._mesh.n_dim == 3:
                 self._end_at_limit_point(fraction)
 
     def _end_at_limit_point(self, failed: float) -> None:
