@@ -24,6 +24,7 @@ from gyrify.report.outputs import write_outputs
 from gyrify.run.onset.smooth import grown
 from gyrify.run.simulation import simulate
 from gyrify.run.validity import config_warnings
+from gyrify.run.validity.expected import expected_onset
 from gyrify.store.export import export
 from gyrify.verify.recheck import verify
 
@@ -147,6 +148,21 @@ def test_a_ball_of_tetrahedra_grows_as_exact_theory_says(tmp_path: Path) -> None
         errors.append(_error(problem, state.u, 150.0))
     assert errors[1] < 0.02
     assert errors[0] > 3.0 * errors[1]
+
+
+def test_onset_is_expected_of_a_ball_alone(tmp_path: Path) -> None:
+    of = {}
+    for name, axes in (("ball", (1.0, 1.0, 1.0)), ("brain", (1.2, 1.0, 0.9))):
+        points, cells = ball(3, axes=axes)
+        of[name] = expected_onset(config(plain(tmp_path / f"{name}.mesh", points, cells)))
+    labels = np.where(MIDDLE > 12.0, 7, np.where(MIDDLE > 7.0, 3, 5))
+    path = plain(tmp_path / "hole.mesh", POINTS, CELLS, labels)
+    hole = {"geometry.labels": {"grey": [7], "white": [3], "hole": [5]}}
+    of["hole"] = expected_onset(config(path, **hole))
+    assert of["ball"].theory == "sphere"
+    for name in ("brain", "hole"):
+        assert of[name].growth_time is None
+        assert "has another shape" in of[name].not_covered
 
 
 def test_a_run_needs_nothing_outside_its_folder(tmp_path: Path) -> None:

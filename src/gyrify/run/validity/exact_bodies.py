@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from gyrify.config.body_sections import FROM_FILES
 from gyrify.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -61,7 +62,8 @@ def sphere_of(config: Config) -> Sphere:
     from gyrify.theory import Sphere
 
     shared, geometry = _shared(config), config.geometry
-    if geometry.shape == "surface" and (geometry.hole_file or geometry.surface.roundness < _ROUND):
+    is_read = geometry.shape in FROM_FILES
+    if is_read and (geometry.hole_surface is not None or geometry.surface.roundness < _ROUND):
         raise ConfigError(
             "the theory is that of a sphere, and the surface of geometry.file has another shape.",
             'Compare with geometry.shape = "sphere" of the same volume.',
