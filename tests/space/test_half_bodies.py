@@ -19,6 +19,7 @@ from gyrify.model.slice import Slice
 from gyrify.report.outputs import write_outputs
 from gyrify.run.body_measures import measured
 from gyrify.run.simulation import simulate
+from gyrify.store.fields import fields
 from gyrify.verify.recheck import verify
 
 AXES = (1.2, 1.0, 0.9)
@@ -87,6 +88,16 @@ def test_it_is_measured_with_its_image(both: tuple[Any, Any, Path]) -> None:
     assert summary["surface_area_mm2"] == pytest.approx(measures.surface_area, rel=0.01)
     assert summary["volume_mm3"] == pytest.approx(measures.volume, rel=0.01)
     assert summary["gi"]["area"]["hull"] == pytest.approx(measures.gi_area_hull, abs=0.01)
+
+
+def test_fields_of_the_surface_are_those_of_the_whole(both: tuple[Any, Any, Path]) -> None:
+    """At the rim, too, where the half has triangles on one side alone."""
+    half, whole, _ = both
+    found, wanted = (fields(history, -1, ["curvature", "thickness"]) for history in (half, whole))
+    contour = half.mesh.contour
+    for name, most in (("curvature", 0.15), ("thickness", 0.03)):
+        error = np.abs(found[name] - wanted[name][: half.mesh.n_points])[contour]
+        assert error.max() < most * np.abs(wanted[name][contour]).max()
 
 
 def test_it_is_free_to_slide_in_the_plane(tmp_path: Path) -> None:

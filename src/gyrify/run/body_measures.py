@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from gyrify.mesh import Mesh
-from gyrify.mesh.mesh import FloatArray, IntArray
+from gyrify.mesh.mesh import FloatArray
+from gyrify.mesh.whole import whole_surface
 from gyrify.metrics import Measures
 from gyrify.metrics.measure import measure_valid
-from gyrify.metrics.mirrored import with_image
 
 if TYPE_CHECKING:
     from gyrify.config.run_sections import Metrics
@@ -46,20 +44,10 @@ def surface_of(mesh: Mesh, points: FloatArray, chosen: Metrics) -> DeformedSurfa
 
     periods = None if mesh.period is None or mesh.period_y is None else (mesh.period, mesh.period_y)
     return DeformedSurface(
-        *_whole(mesh, points, mesh.contour, mesh.faces),
-        *_whole(mesh, points, mesh.interface, mesh.interface_faces),
+        *whole_surface(mesh, points, mesh.contour, mesh.faces),
+        *whole_surface(mesh, points, mesh.interface, mesh.interface_faces),
         chosen.closing_radius,
         chosen.gyrus_prominence,
         periods,
         mesh.points[mesh.contour],
     )
-
-
-def _whole(mesh: Mesh, points: FloatArray, chosen: IntArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
-    """Points and triangles of one of its surfaces, with the image of half a body."""
-    surface = points[chosen], np.searchsorted(chosen, faces)
-    if mesh.on_plane.size == 0:
-        return surface
-    axis = int(np.argmin(np.ptp(mesh.points[mesh.on_plane], axis=0)))
-    rim = np.flatnonzero(np.isin(chosen, mesh.on_plane))
-    return with_image(*surface, rim, axis, float(points[mesh.on_plane, axis].mean()))

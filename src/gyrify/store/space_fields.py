@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from gyrify.mesh.whole import whole_surface
 from gyrify.metrics.surface import mean_curvature
 from gyrify.metrics.surface_pairs import distances_to
 from gyrify.physics.stress import cauchy
@@ -70,8 +71,10 @@ class SpaceFields(StateFields):
     def _curvature(self) -> FloatArray:
         """Mean curvature of the outer surface, positive where it bulges outwards [1/mm]."""
         mesh = self._problem.mesh
-        faces = np.searchsorted(mesh.contour, mesh.faces)
-        return self._on_contour(mean_curvature(self._contour, faces, self._corners(mesh.faces)))
+        points, faces = whole_surface(mesh, mesh.points + self._u, mesh.contour, mesh.faces)
+        # across a period, corners of a triangle lie next to each other
+        corners = points[faces] if mesh.period is None else self._corners(mesh.faces)
+        return self._on_contour(mean_curvature(points, faces, corners)[: mesh.contour.size])
 
     def _thickness(self) -> FloatArray:
         mesh = self._problem.mesh
