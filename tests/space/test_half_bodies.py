@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from written_volumes import config, half_ball, mirrored, plain
 
+from gyrify import Study, run_study
 from gyrify.config import Config
 from gyrify.energy.plane_contact import FacingPoints, PlaneContact
 from gyrify.errors import ConfigError, MeshError
@@ -18,7 +19,9 @@ from gyrify.model.rigid import kept_modes, rigid_modes
 from gyrify.model.slice import Slice
 from gyrify.report.outputs import write_outputs
 from gyrify.run.body_measures import measured
+from gyrify.run.onset.space_waves import surface_wave
 from gyrify.run.simulation import simulate
+from gyrify.run.validity import config_warnings
 from gyrify.store.fields import fields
 from gyrify.verify.recheck import verify
 
@@ -168,6 +171,88 @@ def test_the_other_side_is_the_mirror_image(tmp_path: Path) -> None:
     assert np.abs(v * np.array([1.0, -1.0, 1.0]) - u).max() < 1e-6 * np.abs(u).max()
     again = Config.from_toml(upper.to_toml())
     assert again.config_hash == upper.config_hash != lower.config_hash
+
+
+def test_pieces_that_the_plane_cuts_are_parts_or_holes(tmp_path: Path) -> None:
+    points, cells = half_ball(3)
+    beside = np.concatenate([points, 0.7 * points + np.array([40.0, 0.0, 0.0])])
+    both = np.concatenate([cells, cells + len(points)])
+    free = {**CUT, "dissipation.number": 0.2}
+    mesh = build_mesh(config(plain(tmp_path / "two.mesh", beside, both), **free))
+    assert mesh.clamped.size == 0
+    reach = mesh.points[mesh.contour].max(axis=0)
+    assert reach[0] == pytest.approx(54.0)
+    assert (mesh.region[len(cells) :] == 1).sum() > 100
+    # a cavity that the plane opens
+    middle = np.abs(points[cells].mean(axis=1)).max(axis=1)
+    labels = np.where(middle < 6.0, 3, np.where(middle < 12.0, 2, 1))
+    given = {"geometry.labels": {"grey": [1], "white": [2], "hole": [3]}}
+    hollow = build_mesh(config(plain(tmp_path / "a.mesh", points, cells, labels), **free, **given))
+    assert hollow.clamped.size > 0
+    assert np.linalg.norm(hollow.points[hollow.clamped], axis=1).max() < 14.0
+    assert np.linalg.norm(hollow.points[hollow.contour], axis=1).min() == pytest.approx(20.0)
+
+
+def test_a_cut_that_is_not_flat_is_made_flat_or_refused(tmp_path: Path) -> None:
+    points, cells = half_ball(4)
+    on_cut = points[:, 1] == 0.0
+    for size, fits in ((1e-4, True), (0.05, False)):
+        rough = points.copy()
+        rough[on_cut, 1] = -size * np.random.default_rng(1).uniform(size=on_cut.sum())
+        given = config(plain(tmp_path / f"{size}.mesh", rough, cells), **CUT)
+        if fits:
+            mesh = build_mesh(given)
+            assert mesh.on_plane.size == on_cut.sum()
+            assert not mesh.points[mesh.on_plane, 1].any()
+            assert any("were moved into boundary.plane" in text for text in config_warnings(given))
+        else:
+            with pytest.raises(MeshError, match=r"does not lie in boundary.plane: .* leave it, first at \("):
+                build_mesh(given)
+
+
+def test_forces_of_the_plane_are_told(tmp_path: Path) -> None:
+    points, cells = half_ball(3)
+    path = plain(tmp_path / "a.mesh", necked(points), cells)
+    growing = {**GROWTH, "growth.rate": 0.004, "growth.duration": 500.0, "solver.tolerance": 1e-6}
+    history = simulate(config(path, **CUT, **growing))
+    force = fields(history, -1, ["contact_force"])["contact_force"]
+    gap = history.slice.facing.gap - history.state_vector(-1)[history.slice.facing.points, 1]
+    nearest = history.slice.facing.points[np.argmin(gap)]
+    assert force[nearest, 1] < 0.0
+
+
+def test_modes_have_the_degree_of_the_whole(tmp_path: Path) -> None:
+    ball = build_mesh(config(plain(tmp_path / "a.mesh", *mirrored(*half_ball(5)))))
+    half = build_mesh(config(plain(tmp_path / "b.mesh", *half_ball(5)), **CUT))
+    for mesh in (ball, half):
+        x = mesh.points / np.maximum(np.linalg.norm(mesh.points, axis=1, keepdims=True), 1e-9)
+        height = 35.0 * x[:, 1] ** 4 - 30.0 * x[:, 1] ** 2 + 3.0  # P4 about the normal of the plane
+        assert surface_wave(mesh, np.zeros_like(x), height[:, None] * x)[0] == 4
+
+
+def test_everything_is_told_and_read_again(tmp_path: Path) -> None:
+    """Keys that are tables reach every file."""
+    points, cells = half_ball(3)
+    middle = np.abs(points[cells].mean(axis=1)).max(axis=1)
+    path = plain(
+        tmp_path / "a.mesh", points + np.array([0.0, 3.0, 0.0]), cells, np.where(middle < 12.0, 2, 1)
+    )
+    keys = {"boundary.plane": {"point": [0, 3, 0]}, "geometry.labels": {"grey": [1], "white": [2]}}
+    given = config(path, **CUT, **keys, **{"solver.increments": 2, "growth.duration": 50.0})
+    history = simulate(given, tmp_path / "run")
+    write_outputs(history, tmp_path / "run")
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text())
+    assert summary["parameters"]["geometry.labels"] == {"grey": [1], "white": [2], "hole": []}
+    assert summary["parameters"]["boundary.plane"]["point"] == [0.0, 3.0, 0.0]
+    assert [check.sentence for check in verify(tmp_path / "run").checks if not check.passed] == []
+    # a part of a table that is laid over another one leaves the rest
+    turned = given.with_overrides({"boundary.plane": {"normal": [0, -1, 0]}})
+    assert turned.boundary.plane.point == (0.0, 3.0, 0.0)
+    design = {"key": "growth.rate", "values": [0.001, 0.002]}
+    base = {name: section for name, section in given.to_dict().items() if isinstance(section, dict)}
+    study = Study.from_mapping({"base": base, "design": {"kind": "grid", "parameter": [design]}})
+    found = run_study(study, tmp_path / "study")
+    assert [record.status for record in found.records.values()] == ["completed", "completed"]
 
 
 def test_what_does_not_fit_is_refused(tmp_path: Path) -> None:

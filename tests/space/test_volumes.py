@@ -113,6 +113,20 @@ def test_tissue_is_told_by_labels(way: str, tmp_path: Path) -> None:
     assert again.geometry.labels == given.geometry.labels
 
 
+def test_depth_of_labelled_tissue_lies_between_its_surfaces(tmp_path: Path) -> None:
+    """A cortex of any thickness grows up to its own interface."""
+    inner = np.abs(POINTS[CELLS].mean(axis=1)).max(axis=1)
+    path = plain(tmp_path / "a.mesh", POINTS, CELLS, np.where(inner > 8.0, 1, 2))
+    given = {"geometry.labels": {"grey": [1], "white": [2]}, "geometry.cortical_thickness": 3.0}
+    mesh = build_mesh(config(path, **given))
+    assert mesh.depth[mesh.contour] == pytest.approx(2.0)
+    assert mesh.depth[mesh.interface] == pytest.approx(1.0)
+    grey, white = (np.unique(mesh.cells[mesh.region == tissue]) for tissue in (GREY, WHITE))
+    assert mesh.depth[grey].min() >= 1.0 - 1e-12
+    assert mesh.depth[white].max() <= 1.0 + 1e-12
+    assert any("thick on average" in text for text in config_warnings(config(path, **given)))
+
+
 def test_refinement_keeps_the_body(tmp_path: Path) -> None:
     path = plain(tmp_path / "a.mesh", POINTS, CELLS, np.where(MIDDLE > 12.0, 7, 3))
     given = {"geometry.labels": {"grey": [7], "white": [3]}}
@@ -192,6 +206,8 @@ FAULTS: list[tuple[str, dict[str, Any], type[Exception], str]] = [
     ),
     ("labels", {"geometry.labels": {"grey": [1, 3]}}, ConfigError, "no tetrahedron of .* white matter"),
     ("labels", {"geometry.labels": {"white": [1, 3]}}, ConfigError, "no tetrahedron of .* grey matter"),
+    ("labels", {"geometry.labels": {"grey": [1], "white": [1, 3]}}, ConfigError, "names the label 1 twice"),
+    ("labels", {"geometry.labels": {"grey": [1], "hole": [1], "white": [3]}}, ConfigError, "label 1 twice"),
     ("bare", {"geometry.labels": {"grey": [1], "white": [3]}}, ConfigError, "have no labels"),
     ("plain", {"geometry.hole_file": "plain"}, ConfigError, "hole_file is not allowed"),
     ("plain", {"geometry.interface_file": "plain"}, ConfigError, "interface_file is not allowed"),
@@ -268,6 +284,24 @@ def test_other_cells_and_formats_are_refused(tmp_path: Path) -> None:
     data = plain(tmp_path / "a.mesh", POINTS, CELLS).read_bytes()
     with pytest.raises(ConfigError, match="3 numbers follow its end"):
         read_tetrahedra(data + b"0\n1 2 3\n", "a.mesh")
+
+
+@pytest.mark.parametrize(
+    "rest", ["1e300 1 2 3 4", "1 99999999999999999999 2 3 4", "nan 1 2 3 4", "-inf 1 2 3 4"]
+)
+def test_numbers_out_of_all_bounds_are_refused(rest: str, recwarn: pytest.WarningsRecorder) -> None:
+    text = f"4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1\n{rest}\n"
+    with pytest.raises(ConfigError, match="damaged"):
+        read_tetrahedra(text.encode(), "a.mesh")
+    assert not recwarn.list
+
+
+def test_a_reader_does_not_speak_to_the_terminal(capfd: pytest.CaptureFixture[str]) -> None:
+    """The one document of --json stands alone."""
+    for data in (b"", b"MeshVersionFormatted 2\nDimension 2\nVertices\n1\n0 0 0\nEnd\n", b"nothing"):
+        with pytest.raises(ConfigError):
+            read_tetrahedra(data, "a.mesh")
+    assert capfd.readouterr() == ("", "")
 
 
 def test_points_that_coincide_are_joined_and_turned_cells_accepted(tmp_path: Path) -> None:

@@ -52,7 +52,8 @@ def _layers(config: Config) -> str:
 
 def _white_matter(config: Config) -> str:
     geometry = config.geometry
-    wall = geometry.narrowest_wall
+    # half a body may be cut where it is thickest
+    wall = geometry.narrowest_wall * (2.0 if config.boundary.clamp == "plane" else 1.0)
     if geometry.cortical_thickness < MAX_WALL_SHARE * wall:
         return ""
     if geometry.shape in FROM_FILES:
@@ -100,8 +101,12 @@ def _cells_in_space(config: Config) -> str:
         return ""
     if config.geometry.shape in FROM_FILES:
         return (
-            f"mesh: about {cells:.3g} cells are not allowed: at most {MAX_CELLS}. Try a smaller mesh.refine, "
-            "a smaller mesh.n_cortex_layers, or a geometry.file with fewer triangles."
+            f"mesh: about {cells:.3g} cells are not allowed: at most {MAX_CELLS}. Try a smaller mesh.refine"
+            + (
+                " or a geometry.file with fewer tetrahedra."
+                if config.geometry.shape == "volume"
+                else ", a smaller mesh.n_cortex_layers, or a geometry.file with fewer triangles."
+            )
         )
     enough = math.ceil(100.0 * space_checks.edge_length(config) * math.sqrt(cells / MAX_CELLS)) / 100.0
     return (

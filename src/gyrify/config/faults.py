@@ -58,9 +58,9 @@ def config_error(model: type[BaseModel], errors: Iterable[Mapping[str, Any]]) ->
     """
     faults: dict[str, str] = {}
     for error in errors:
-        path = [str(part) for part in error["loc"][:2]]
-        owner, field = _locate(model, path)
-        name = ".".join(path[: 1 if owner is model else 2])
+        path = [str(part) for part in error["loc"][:3]]
+        owner, field, depth = _locate(model, path)
+        name = ".".join(path[:depth])
         if name not in faults and len(faults) <= MAX_FAULTS:
             faults[name] = _sentence(model, owner, name, field, error["input"])
     try:
@@ -134,12 +134,12 @@ def _letters(name: str) -> str:
     return re.sub(r"[^a-z0-9]", "", name.lower())
 
 
-def _locate(model: type[BaseModel], path: Sequence[str]) -> tuple[type[BaseModel], FieldInfo | None]:
-    """Return the model that owns the last key of a path, and its field if it has one."""
-    section = sections(model).get(path[0]) if path else None
-    if section is not None and len(path) > 1:
-        return section, section.model_fields.get(path[1])
-    return model, model.model_fields.get(path[0]) if path else None
+def _locate(model: type[BaseModel], path: Sequence[str]) -> tuple[type[BaseModel], FieldInfo | None, int]:
+    """Return the model that owns the last key of a path, its field if it has one, and the key's depth."""
+    owner, depth = model, 1
+    while len(path) > depth and (inner := sections(owner).get(path[depth - 1])) is not None:
+        owner, depth = inner, depth + 1
+    return owner, owner.model_fields.get(path[depth - 1]) if path else None, depth
 
 
 def _sentence(

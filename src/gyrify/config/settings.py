@@ -254,7 +254,9 @@ def merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
     for key, value in over.items():
         below, above = merged.get(key), _as_dict(value)
         if isinstance(below, dict) and isinstance(above, dict):
-            merged[key] = {**below, **above}
+            tables = {name: item for name, item in above.items() if isinstance(item, dict)}
+            both = {k: {**below[k], **item} for k, item in tables.items() if isinstance(below.get(k), dict)}
+            merged[key] = {**below, **above, **both}
         elif below is None or not isinstance(above, dict):
             merged[key] = above
     return merged

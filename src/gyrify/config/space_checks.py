@@ -173,7 +173,8 @@ def files(config: Config) -> str:
         if getattr(geometry, key) != getattr(defaults, key):
             return (
                 f"geometry.{key} = {show(getattr(geometry, key))} is not allowed with geometry.shape = "
-                f'"{geometry.shape}", which has no files. Try geometry.shape = "surface".'
+                f'"{geometry.shape}", which has no files. Try geometry.shape = '
+                f'"{"volume" if key == "labels" else "surface"}".'
             )
     return ""
 

@@ -114,7 +114,9 @@ def allowed(field: FieldInfo) -> str:
     parts = ["true or false"] if bool in kinds else []
     if is_number(field):
         parts.append(f"a {'whole ' if int in kinds else ''}number{_range(bounds(field))}{unit}")
-    if typing.get_origin(kinds[0]) is tuple and not choices(field):
+    if typing.get_origin(kinds[0]) is tuple and Ellipsis in typing.get_args(kinds[0]) and not choices(field):
+        parts.append("a list of whole numbers")
+    elif typing.get_origin(kinds[0]) is tuple and not choices(field):
         parts.append(f"a list of {len(typing.get_args(kinds[0]))} numbers{_range(bounds(field))}{unit}")
     words = [show(word) for word in choices(field)]
     if isinstance(kinds[0], type) and issubclass(kinds[0], BaseModel):

@@ -6,8 +6,6 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from gyrify.base.places import place
@@ -17,9 +15,9 @@ from gyrify.mesh.mesh import GREY, WHITE, FloatArray, IntArray, Mesh
 from gyrify.mesh.offset_surface import angle_normals
 from gyrify.mesh.quality import LOWEST_QUALITY, tetrahedron_quality
 from gyrify.mesh.shapes.volume_body import VolumeBody
-from gyrify.metrics.surface import enclosed_volume
+from gyrify.mesh.volume_sides import sides_of
 from gyrify.metrics.surface_pairs import crossings, distances_to
-from gyrify.metrics.tetrahedra import boundary_faces, faces_between, signed_volumes
+from gyrify.metrics.tetrahedra import faces_between, signed_volumes
 
 _EDGES: Final = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
 # The eight parts of a tetrahedron with corners 0 to 3 and middles 4 to 9 of its edges: four at the corners,
@@ -27,8 +25,6 @@ _EDGES: Final = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
 _AT_CORNERS: Final = np.array([[0, 4, 5, 6], [4, 1, 7, 8], [5, 7, 2, 9], [6, 8, 9, 3]])
 _DIAGONALS: Final = np.array([[4, 9], [5, 8], [6, 7]])
 _AROUND: Final = np.array([[5, 7, 8, 6], [4, 6, 9, 7], [4, 5, 9, 8]])
-# Points this near to the plane of symmetry over the size of the body lie in it.
-_IN_PLANE: Final = 1e-6
 # The least quality of a cell: below, it is all but flat.
 _FLATTEST: Final = 1e-4
 # A cortex whose mean thickness differs from T by more than this is told.
@@ -59,8 +55,8 @@ def volume_mesh(body: VolumeBody, refine: int = 0) -> Mesh:
     for _ in range(refine):
         points, cells = _eighths(points, cells)
         grey = None if grey is None else np.tile(grey, 8)
-    faces, clamped, on_plane = _sides(points, cells, body)
-    contour = np.unique(faces)
+    sides = sides_of(points, cells, body.plane)
+    points, faces, contour = sides.points, sides.outer, np.unique(sides.outer)
     _require_no_crossing(points, faces)
     T, below = body.cortical_thickness, distances_to(points, points[faces])
     below[contour] = 0.0
@@ -72,15 +68,39 @@ def volume_mesh(body: VolumeBody, refine: int = 0) -> Mesh:
         region=np.where(is_grey, GREY, WHITE).astype(np.int8),
         contour=contour,
         interface=np.unique(interface_faces),
-        clamped=clamped,
-        across=_across(points, cells, contour, faces, on_plane),
+        clamped=sides.hole,
+        across=_across(points, cells, contour, faces, sides.on_plane),
         patch=edge_clusters(points, cells),
-        depth=np.where(below < T, 2.0 - below / T, np.maximum(1.0 - (below - T) / body.wall[0], 0.0)),
+        depth=_depth(points, cells, below, None if grey is None else interface_faces, is_grey, body),
         faces=faces,
         interface_faces=interface_faces,
-        notes=_notes(points, cells, below[np.unique(interface_faces)], body),
-        on_plane=on_plane,
+        notes=(*sides.notes, *_notes(points, cells, below[np.unique(interface_faces)], body)),
+        on_plane=sides.on_plane,
     )
+
+
+def _depth(
+    points: FloatArray,
+    cells: IntArray,
+    below: FloatArray,
+    interface: IntArray | None,
+    is_grey: NDArray[np.bool_],
+    body: VolumeBody,
+) -> FloatArray:
+    """(n_points,) position across the layers; see `gyrify.mesh.mesh.Mesh`.
+
+    By the distance below the outer surface, or between it and the interface of labelled cells, where the
+    cortex has a thickness of its own.
+    """
+    T, white = body.cortical_thickness, body.wall[0]
+    if interface is None:
+        return np.where(below < T, 2.0 - below / T, np.maximum(1.0 - (below - T) / white, 0.0))
+    inner = distances_to(points, points[interface])
+    inner[np.unique(interface)] = 0.0
+    in_grey = np.zeros(points.shape[0], dtype=bool)
+    in_grey[cells[is_grey]] = True
+    share = below / np.where(below + inner > 0.0, below + inner, 1.0)
+    return np.where(in_grey & (inner > 0.0), 2.0 - share, np.maximum(1.0 - inner / white, 0.0))
 
 
 def _eighths(points: FloatArray, cells: IntArray) -> tuple[FloatArray, IntArray]:
@@ -92,65 +112,13 @@ def _eighths(points: FloatArray, cells: IntArray) -> tuple[FloatArray, IntArray]
     ends = finer[ten[:, _DIAGONALS]]
     chosen = np.argmin(np.round(np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2), 12), axis=1)
     parts = [ten[:, corners] for corners in _AT_CORNERS]
-    ends_of, around = (
-        np.take_along_axis(ten, _DIAGONALS[chosen], 1),
-        np.take_along_axis(ten, _AROUND[chosen], 1),
-    )
+    axis, around = (np.take_along_axis(ten, table[chosen], 1) for table in (_DIAGONALS, _AROUND))
     for k in range(4):
-        parts.append(np.stack([ends_of[:, 0], ends_of[:, 1], around[:, k], around[:, (k + 1) % 4]], axis=1))
+        parts.append(np.concatenate([axis, around[:, [k, (k + 1) % 4]]], axis=1))
     every = np.concatenate(parts)
     inverted = signed_volumes(finer[every]) < 0.0
     every[inverted, 2], every[inverted, 3] = every[inverted, 3].copy(), every[inverted, 2].copy()
     return finer, every
-
-
-def _sides(points: FloatArray, cells: IntArray, body: VolumeBody) -> tuple[IntArray, IntArray, IntArray]:
-    """Triangles of the outer surface; points of holes; points in the plane of symmetry."""
-    faces, in_plane = boundary_faces(cells), np.zeros(points.shape[0], dtype=bool)
-    if body.plane is not None:
-        in_plane = _in_plane(points, *body.plane)
-        faces = faces[~in_plane[faces].all(axis=1)]
-    part = _parts(faces, points.shape[0])
-    is_outer = np.zeros(part.max() + 1, dtype=bool)
-    size = np.zeros(part.max() + 1)
-    for k in range(part.max() + 1):
-        own = faces[part == k]
-        size[k] = np.ptp(points[own].reshape(-1, 3), axis=0).max()
-        is_outer[k] = not in_plane[own].any() and enclosed_volume(points[own] - points[own[0, 0]]) > 0.0
-    touching = [k for k in range(part.max() + 1) if in_plane[faces[part == k]].any()]
-    if touching:  # what a plane cuts open has no inside; the largest is the outer surface
-        is_outer[touching[int(np.argmax(size[touching]))]] = True
-    outer = is_outer[part]
-    return faces[outer], np.unique(faces[~outer]), np.flatnonzero(in_plane)
-
-
-def _in_plane(points: FloatArray, point: FloatArray, normal: FloatArray) -> NDArray[np.bool_]:
-    height = (points - point) @ normal
-    size = float(np.ptp(points, axis=0).max())
-    inside = np.abs(height) <= _IN_PLANE * size
-    highest = int(np.argmax(height))
-    if height[highest] > _IN_PLANE * size:
-        raise MeshError(
-            f"The body lies on both sides of boundary.plane: {place(points[highest])} is "
-            f"{height[highest]:.3g} mm beyond it.",
-            "Give a point and a normal that points out of the body, or cut the body there.",
-        )
-    if np.count_nonzero(inside) < 3:
-        raise MeshError(
-            f"The body has no face in boundary.plane: its nearest point, {place(points[highest])}, is "
-            f"{-height[highest]:.3g} mm away.",
-            "Give a point of the flat side of the body, in mm.",
-        )
-    return np.asarray(inside)
-
-
-def _parts(faces: IntArray, n_points: int) -> IntArray:
-    """(n,) connected part of each triangle."""
-    a, b = faces[:, [0, 1]].ravel(), faces[:, [1, 2]].ravel()
-    _, label = connected_components(
-        coo_array((np.ones(a.size), (a, b)), shape=(n_points, n_points)), directed=False
-    )
-    return np.asarray(np.unique(label[faces[:, 0]], return_inverse=True)[1], dtype=np.int64)
 
 
 def _require_no_crossing(points: FloatArray, faces: IntArray) -> None:

@@ -244,6 +244,11 @@ class Slice(Tissue):
         spacing = self._spacing(u)
         return ContactEnergy(self.surface, self._activation(spacing), self.barrier_stiffness, 0.25 * spacing)
 
+    def contacts(self, u: FloatArray) -> list[ContactEnergy | PlaneContact]:
+        """Every barrier of contact for an increment that starts at a state u."""
+        own = self.contact_energy(u)
+        return [own, self.plane_contact(u)] if self.mesh.on_plane.size else [own]
+
     def plane_contact(self, u: FloatArray) -> PlaneContact:
         """Barrier before a plane of symmetry, half as far as that before an image as far behind it."""
         facing = self.facing
@@ -287,8 +292,8 @@ class Slice(Tissue):
     def is_path_admissible(self, u: FloatArray, u_end: FloatArray) -> bool:
         """See `gyrify.solve.problem.Problem`; in space folds slide along each other, on no straight path.
 
-        There each step of a descent is free of collisions, and cells are positive inside a surface that
-        crosses itself nowhere: then no two places of the body meet (Ball 1981).
+        There each step of a descent is free of collisions, and states are checked: no two places meet where
+        cells are positive inside a boundary that crosses itself nowhere (Ball 1981).
         """
         if self.mesh.n_dim == 3 or not self.config.contact.enabled:
             return True

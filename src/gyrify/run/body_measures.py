@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from gyrify.mesh import Mesh
+from gyrify.mesh.boundary import boundary_faces
 from gyrify.mesh.mesh import FloatArray
 from gyrify.mesh.whole import whole_surface
 from gyrify.metrics import Measures
@@ -33,6 +36,22 @@ def measured(mesh: Mesh, points: FloatArray, chosen: Metrics, *, earlier: bool =
         return Measures.of(surface_of(mesh, points, chosen))
     lengths = (chosen.closing_radius, chosen.gyrus_prominence, chosen.samples)
     return measure_valid(points[mesh.contour], points[mesh.interface], *lengths, mesh.period, earlier=earlier)
+
+
+def hole_crosses_itself(mesh: Mesh, points: FloatArray) -> bool:
+    """Whether the surface of a hole in space does; contact is that of the outer surface alone.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The reference mesh.
+    points : (n_points, 3) float array
+        Deformed coordinates [mm].
+    """
+    from gyrify.metrics.surface_pairs import crosses_itself
+
+    faces, _ = boundary_faces(mesh)
+    return crosses_itself(points, faces[np.isin(faces, mesh.clamped).all(axis=1)])
 
 
 def surface_of(mesh: Mesh, points: FloatArray, chosen: Metrics) -> DeformedSurface:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
+from pydantic import BaseModel
 
 from gyrify.config import Config
 from gyrify.config.inputs.named_files import FILE_KEYS, kept_name
@@ -134,13 +135,20 @@ def _summary(history: History, measures: Measures) -> dict[str, Any]:
 def _parameters(config: Config) -> dict[str, Any]:
     """What a reader asks for first, and every other value that is not the default; by dotted key."""
     told = {
-        row.key: list(row.value) if isinstance(row.value, tuple) else row.value
+        row.key: _plain(row.value)
         for row in rows(config)
         if row.key in _TOLD or (row.default is not None and row.value != row.default)
     }
     # where a file lies says nothing: its copy in the folder is told
     paths = {f"geometry.{key}": key for key in FILE_KEYS}
     return {key: kept_name(paths[key], str(value)) if key in paths else value for key, value in told.items()}
+
+
+def _plain(value: Any) -> Any:
+    """A value as JSON has it."""
+    if isinstance(value, BaseModel):
+        return value.model_dump(mode="json")
+    return list(value) if isinstance(value, tuple) else value
 
 
 def _has_unit(name: str, known: Mapping[str, Quantity]) -> bool:

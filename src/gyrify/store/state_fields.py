@@ -154,5 +154,8 @@ class StateFields:
         """Force of the barrier on each point, minus the gradient of the contact energy [Pa mm]."""
         if not self._problem.config.contact.enabled:
             return np.zeros_like(self._u)
-        gradient = self._problem.contact_energy(self._u_start).evaluate(self._u, 1).gradient
-        return np.zeros_like(self._u) if gradient is None else 0.0 - gradient
+        force = np.zeros_like(self._u)
+        for term in self._problem.contacts(self._u_start):
+            gradient = term.evaluate(self._u, 1).gradient
+            force = force if gradient is None else force - gradient
+        return force

@@ -11,6 +11,7 @@ import numpy as np
 
 from gyrify.config import Config
 from gyrify.errors import ConfigError, HistoryError
+from gyrify.run.body_measures import hole_crosses_itself
 from gyrify.run.reevaluation import Increment, reevaluated
 from gyrify.run.summary import metrics_rows
 from gyrify.run.units import energy_unit, force_unit
@@ -77,6 +78,7 @@ def verify(run: str | Path) -> Verification:
         checks += _check_symmetry(history)
     if history.config.contact.enabled:
         checks += _check_contact(rows)
+        checks += _check_hole(history)
         if history.mesh.n_dim == 2:  # in space no path is straight; see `Slice.is_path_admissible`
             checks.append(_check_path(increments, _jumps(history)))
     checks += check_metrics(history, folder, rows, summary)
@@ -186,6 +188,16 @@ def _check_contact(rows: list[dict[str, Any]]) -> Iterator[Check]:
     )
     gaps = [float(row["min_gap_mm"]) for row in rows]
     yield _above_zero("gap", gaps, "The smallest gap [mm]", first=0)
+
+
+def _check_hole(history: History) -> Iterator[Check]:
+    """A hole that nothing holds meets itself in no state: contact does not keep it from that."""
+    mesh = history.mesh
+    if mesh.n_dim == 2 or mesh.clamped.size == 0 or history.slice.is_clamped:
+        return
+    crossed = sum(hole_crosses_itself(mesh, history.points(number)) for number in range(len(history)))
+    sentence = f"The surface of the hole crosses itself in {crossed} of {len(history)} states."
+    yield Check("hole", crossed == 0, sentence, float(crossed), 0.0)
 
 
 def _check_path(increments: list[Increment], jumps: set[int]) -> Check:

@@ -119,7 +119,7 @@ def body_volume(path: str, unit: str, _digest: str, labels: Labels) -> Tetrahedr
     notes: list[str] = []
     grey: NDArray[np.bool_] | None = None
     if labels != Labels():
-        cells, grey = _labelled(cells, found, labels, name)
+        cells, grey = _labelled(cells, found, labels, name, notes)
     points, cells = _joined(points, cells, notes)
     cells = _positive(points, cells, name)
     _require_one_behind_each_face(points, cells, name)
@@ -132,13 +132,20 @@ def _require_finite(points: FloatArray, name: str) -> None:
 
 
 def _labelled(
-    cells: IntArray, found: IntArray | None, labels: Labels, name: str
+    cells: IntArray, found: IntArray | None, labels: Labels, name: str, notes: list[str]
 ) -> tuple[IntArray, NDArray[np.bool_]]:
     """Cells of the body, and which of them are grey."""
     if found is None:
         raise ConfigError(
             f"geometry.labels is given, but the tetrahedra of {name} have no labels.",
             "Leave geometry.labels out: cells are then grey by their depth.",
+        )
+    twice = sorted(
+        {*labels.grey} & {*labels.white} | {*labels.grey} & {*labels.hole} | {*labels.white} & {*labels.hole}
+    )
+    if twice:
+        raise ConfigError(
+            f"geometry.labels names the label {twice[0]} twice.", "Name each label once: grey, white or hole."
         )
     known = np.unique(found)
     wanted = {*labels.grey, *labels.white, *labels.hole}
@@ -149,6 +156,8 @@ def _labelled(
             f"labels are {', '.join(str(int(label)) for label in known[:20])}.",
             "Name each label of the file once: grey, white or hole.",
         )
+    if absent := sorted(wanted - {int(label) for label in known}):
+        notes.append(f"no tetrahedron has the label {absent[0]} of geometry.labels")
     is_grey, is_hole = np.isin(found, labels.grey), np.isin(found, labels.hole)
     for role, count in (("grey", is_grey.sum()), ("white", (~is_grey & ~is_hole).sum())):
         if count == 0:

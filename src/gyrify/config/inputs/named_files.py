@@ -102,7 +102,7 @@ def content(key: str, path: str) -> bytes:
             "Give the path of a surface; it is relative to the configuration file.",
         ) from fault
     if not data:
-        raise ConfigError(f"{name}: it is empty.", "Give a file that holds a surface.")
+        raise ConfigError(f"{name}: it is empty.", "Give a file that holds a body.")
     return data
 
 

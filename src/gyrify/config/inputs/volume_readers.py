@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Final
@@ -23,6 +25,8 @@ FORMATS: Final = "MESH (plain or Medit), VTK, VTU, MSH, INP, NAS, BDF, SU2 or AV
 # What programs call the labels of cells; gyrify's own files have the last one.
 _LABELS: Final = ("medit:ref", "gmsh:physical", "cell_tags", "nastran:ref", "su2:tag", "avsucd:material")
 _OTHER_LABELS: Final = ("label", "labels", "material", "region")
+# Numbers of points and labels are below this.
+_LARGEST: Final = 2.0**53
 # Cells that a surface or a curve in the same file has.
 _IGNORED: Final = frozenset({"vertex", "line", "line3", "triangle", "triangle6"})
 
@@ -61,7 +65,7 @@ def read_tetrahedra(data: bytes, name: str) -> Tetrahedra:
         return _checked(points, cells, labels)
     except ConfigError:
         raise
-    except (Exception, SystemExit) as fault:  # readers raise whatever damaged bytes lead them to
+    except Exception as fault:  # readers raise whatever damaged bytes lead them to
         why = " ".join(str(fault).split())[:120] or type(fault).__name__
         raise ConfigError(
             f'"{Path(name).name}" cannot be read as tetrahedra: it is damaged or cut short ({why}).',
@@ -84,6 +88,8 @@ def _plain(data: bytes) -> Tetrahedra:
         at = end
     if at != numbers.size:
         raise ValueError(f"{numbers.size - at} numbers follow its end")
+    if not np.all(np.abs(blocks[1]) < _LARGEST):
+        raise ValueError("a tetrahedron has a number that is far too large")
     whole = blocks[1].astype(np.int64)
     if np.any(whole != blocks[1]):
         raise ValueError("a tetrahedron names a point by a number with a fraction")
@@ -95,7 +101,12 @@ def _by_meshio(data: bytes, suffix: str) -> Tetrahedra:
     with TemporaryDirectory(prefix="gyrify-") as folder:  # some of its readers read from paths only
         path = Path(folder) / f"volume{suffix}"
         path.write_bytes(data)
-        mesh = meshio.read(path)
+        told = StringIO()  # it speaks to the terminal
+        with redirect_stdout(told), redirect_stderr(told):
+            try:
+                mesh = meshio.read(path)
+            except SystemExit:
+                raise ValueError(told.getvalue() or "the reader gave up") from None
     kinds = [block.type for block in mesh.cells]
     other = sorted(set(kinds) - _IGNORED - {"tetra"})
     if other:
@@ -120,7 +131,10 @@ def _labels(cell_data: dict[str, Any], own: list[int]) -> IntArray | None:
     whole = {
         name: array
         for name, array in known.items()
-        if array.ndim == 1 and array.dtype.kind in "iuf" and np.array_equal(array, np.round(array))
+        if array.ndim == 1
+        and array.dtype.kind in "iuf"
+        and np.all(np.abs(array.astype(np.float64)) < _LARGEST)
+        and np.array_equal(array, np.round(array))
     }
     chosen = [str(name) for name in (*_LABELS, *_OTHER_LABELS) if name in whole][:1]
     if not chosen and len(whole) == 1:
@@ -129,7 +143,9 @@ def _labels(cell_data: dict[str, Any], own: list[int]) -> IntArray | None:
 
 
 def _checked(points: Any, cells: Any, labels: IntArray | None) -> Tetrahedra:
-    points = np.ascontiguousarray(points, dtype=np.float64).reshape(-1, 3)
+    points = np.ascontiguousarray(points, dtype=np.float64)
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise ValueError("its points do not lie in space")
     cells = np.ascontiguousarray(cells, dtype=np.int64).reshape(-1, 4)
     if cells.size == 0:
         raise ConfigError("The volume holds no tetrahedra.", "Give a file with tetrahedra, not a surface.")

@@ -57,7 +57,7 @@ class SmoothState:
         """Whether the contact barrier acts."""
         if not self.problem.config.contact.enabled:
             return False
-        return self.problem.contact_energy(self.u).evaluate(self.u, 0).value > 0.0
+        return any(term.evaluate(self.u, 0).value > 0.0 for term in self.problem.contacts(self.u))
 
     @property
     def is_folded(self) -> bool:

@@ -43,7 +43,8 @@ def surface_wave(mesh: Mesh, u: FloatArray, mode: FloatArray) -> tuple[int, floa
     wavelength = float(2.0 * np.pi * np.sqrt(areas @ varied**2 / slope))
     if mesh.period is not None:
         return max(round(mesh.period / wavelength), 1), wavelength
-    square = float(face_areas(corners).sum()) * np.pi / wavelength**2  # (2 pi R / wavelength)^2
+    area = float(face_areas(corners).sum()) * (2.0 if mesh.on_plane.size else 1.0)  # of both halves
+    square = area * np.pi / wavelength**2  # (2 pi R / wavelength)^2
     return max(round(np.sqrt(square + 0.25) - 0.5), 1), wavelength
 
 

@@ -29,7 +29,7 @@ def _radius(config: Config) -> list[str]:
     advice = f"Leave metrics.closing_radius out to take {fitting:.4g} mm, which scales with the body."
     name, size = ("period", geometry.length)
     if geometry.shape not in PERIODIC:
-        name, size = "mean radius", geometry.mean_radius
+        name, size = "mean radius", geometry.mean_radius * config.boundary.whole
     if radius > size:
         return [
             f"metrics.closing_radius = {radius:.4g} mm is larger than the {name} of the body, "
