@@ -71,7 +71,7 @@ class SurfaceClosing:
         is_surface[tuple(place.T)] = True
         parts, _ = ndimage.label(~is_surface)
         distance = h * ndimage.distance_transform_edt(parts == parts[0, 0, -1])
-        self._read_exactly(low, distance, points)
+        self._read_exactly(low, distance, _tree(points))
         return low, distance
 
     def _around(self, corners: FloatArray) -> FloatArray:
@@ -90,18 +90,18 @@ class SurfaceClosing:
         near = np.all((middle > -margin) & (middle < np.array([x, y]) + margin), axis=1)
         return np.asarray(images[near])
 
-    def _read_exactly(self, origin: FloatArray, distance: FloatArray, points: FloatArray) -> None:
+    def _read_exactly(self, origin: FloatArray, distance: FloatArray, points: cKDTree) -> None:
         """Replace distances next to the radius by those to points."""
         near = np.argwhere(np.abs(distance - self.radius) < _BAND * self.spacing)
-        exact, _ = _tree(points).query(origin + self.spacing * near)
+        exact, _ = points.query(origin + self.spacing * near)
         distance[tuple(near.T)] = exact
 
     @cached_property
-    def _offset_points(self) -> FloatArray:
-        """(n, 3) points on the outline of the dilated solid."""
+    def _offset_points(self) -> cKDTree:
+        """Points on the outline of the dilated solid."""
         origin, distance = self._grid
         outline = _level_set(origin, distance, self.radius, self.spacing)
-        return sampled(outline, 0.5 * self.spacing)
+        return _tree(sampled(outline, 0.5 * self.spacing))
 
     @cached_property
     def area(self) -> float:
@@ -119,7 +119,7 @@ class SurfaceClosing:
 
     def depth(self, points: FloatArray) -> FloatArray:
         """(n,) depth of points of the solid below the closing's outline [mm], at least 0."""
-        distance, _ = _tree(self._offset_points).query(points)
+        distance, _ = self._offset_points.query(points)
         return np.asarray(np.maximum(distance - self.radius, 0.0))
 
 

@@ -115,16 +115,20 @@ def smallest_gap(points: FloatArray, faces: IntArray) -> float:
     facets = face_vectors(corners)
     facets /= np.linalg.norm(facets, axis=1, keepdims=True)
     centres = corners.mean(axis=1)
-    size = np.linalg.norm(corners - centres[:, None], axis=2).max()
-    reach, limit = 2.0 * size, 0.1 * float(np.ptp(points, axis=0).max()) + size
-    groups = [
-        (cKDTree(starts[own]), cKDTree(centres[other]), own, other)
-        for own, other in _facing_groups(directions, facets)
-    ]
+    sizes = np.linalg.norm(corners - centres[:, None], axis=2).max(axis=1)
+    groups = []
+    for own, facing in _facing_groups(directions, facets):
+        tree = cKDTree(starts[own])
+        # by size, so that a few large triangles do not make all others look far
+        for part in _size_classes(sizes[facing]):
+            other = facing[part]
+            groups.append((tree, cKDTree(centres[other]), sizes[other].max(), own, other))
+    gap, limit = float(np.median(sizes)), 0.1 * float(np.ptp(points, axis=0).max())
     while True:
         found = np.inf
-        for starts_tree, tree, own, other in groups:
-            near = starts_tree.sparse_distance_matrix(tree, reach, output_type="ndarray")
+        for tree, of_faces, size, own, other in groups:
+            reach = size + min(gap, found)
+            near = tree.sparse_distance_matrix(of_faces, reach, output_type="ndarray")
             start, face = own[near["i"]], other[near["j"]]
             kept = np.einsum("ni,ni->n", directions[start], facets[face]) < _FACING
             # at the bottom of a sharp sulcus a point faces triangles about itself, at no distance
@@ -133,9 +137,11 @@ def smallest_gap(points: FloatArray, faces: IntArray) -> float:
             across = closest_points(starts[start], corners[face]) - starts[start]
             outwards = np.einsum("ni,ni->n", across, directions[start]) > 0.0
             found = min(found, float(np.linalg.norm(across[outwards], axis=1).min(initial=np.inf)))
-        if found <= reach - size or reach >= limit:
+        if found <= gap:  # nothing nearer was out of reach
             return found
-        reach *= 2.0
+        if gap >= limit:
+            return np.inf
+        gap = min(2.0 * gap if found == np.inf else found, limit)
 
 
 def _facing_groups(directions: FloatArray, facets: FloatArray) -> Iterator[tuple[IntArray, IntArray]]:
