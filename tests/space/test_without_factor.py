@@ -155,6 +155,23 @@ def test_auto_keeps_a_factor_where_it_fits(monkeypatch: pytest.MonkeyPatch) -> N
     assert Slice(Config().with_overrides({"mesh.n_around": 40})).linear_solver == direct
 
 
+def test_auto_takes_conjugate_gradients_where_they_are_faster(monkeypatch: pytest.MonkeyPatch) -> None:
+    fitting = {**SMALL, "stability.detect": False, "dissipation.kind": "drag", "dissipation.number": 0.2}
+    base = config(BALL, **{**fitting, "material.poisson_ratio": 0.4})
+    direct = Slice(base).linear_solver
+    assert direct in ("pardiso", "superlu")  # it is small
+    monkeypatch.setattr(solver_choice, "_MANY", 10)
+    assert Slice(base).linear_solver == "cg"
+    for other in (
+        {"stability.detect": True},
+        {"dissipation.kind": "none"},
+        {"material.poisson_ratio": 0.47},
+        {"mesh.element": "quadratic"},
+        {"solver.linear_solver": direct},
+    ):
+        assert Slice(base.replace(**other)).linear_solver == direct
+
+
 def test_a_factor_grows_faster_than_the_mesh() -> None:
     """PARDISO told 2.2 GB for 305 445 unknowns, and SuperLU took 1.25 GB for 19 224."""
     assert 2200.0 < factor_memory("pardiso", 305_445) < 4400.0
@@ -169,7 +186,7 @@ def test_what_was_chosen_is_told_and_kept(monkeypatch: pytest.MonkeyPatch, tmp_p
     whole = simulate(base, tmp_path / "whole")
     told = summarise(whole)
     assert whole.linear_solver == told["solver"]["linear_solver"] == "cg"
-    assert "a factor would not fit" in _solved_with(told)
+    assert "a factor would take longer or not fit" in _solved_with(told)
     assert _solved_with({**told, "parameters": {"solver.linear_solver": "cg"}}) == "conjugate gradients"
 
     def stop(progress: object) -> None:  # noqa: ARG001

@@ -201,7 +201,7 @@ def _solved_with(summary: dict[str, Any]) -> str:
     if name != "cg":
         return name
     is_asked_for = "solver.linear_solver" in summary["parameters"]
-    return "conjugate gradients" + ("" if is_asked_for else ", since a factor would not fit into the memory")
+    return "conjugate gradients" + ("" if is_asked_for else ", since a factor would take longer or not fit")
 
 
 def _report(summary: dict[str, Any], folder: Path) -> None:

@@ -65,7 +65,8 @@ class Solver(Section):
     linear_solver: Literal["auto", "pardiso", "superlu", "cg"] = setting(
         "auto",
         "Sparse direct solver, or conjugate gradients (cg, in space), which keep no factor; auto takes "
-        "PARDISO where it is installed, else SuperLU, and cg where a factor would not fit into the memory.",
+        "PARDISO where it is installed, else SuperLU, and cg where it is faster or a factor would not fit "
+        "into the memory.",
     )
 
 
