@@ -1,4 +1,4 @@
-"""Which linear solver serves a body: a direct one, or conjugate gradients where they are faster or smaller."""
+"""Which linear solver serves a body: a direct one, or conjugate gradients where they take less."""
 
 from __future__ import annotations
 
