@@ -18,6 +18,7 @@ from gyrify.errors import ConfigError, MeshError
 from gyrify.mesh import GREY, WHITE
 from gyrify.metrics.tetrahedra import boundary_faces, signed_volumes
 from gyrify.model import kept_mesh
+from gyrify.model.body import cortical_share
 from gyrify.model.meshing import build_mesh
 from gyrify.model.slice import Slice
 from gyrify.report.outputs import write_outputs
@@ -83,6 +84,12 @@ def test_tissue_is_told_by_depth(tmp_path: Path) -> None:
     assert np.einsum("ni,ni->n", normal, mesh.across)[mesh.region == GREY].min() > 0.9
     (told,) = [text for text in config_warnings(given) if "no labels" in text]
     assert "rough" in told
+    # the sigmoid profile is by the mean depth of the corners, also of cells on both sides of the interface
+    places = Slice(given.replace(**{"growth.profile": "sigmoid"}))._places()
+    share = cortical_share(given, places)
+    corners = 20.0 - np.linalg.norm(mesh.cell_points, axis=2)
+    wanted = 1.0 / (1.0 + np.exp(10.0 * (corners.mean(axis=1) / 6.0 - 1.0)))
+    assert np.abs(share - wanted).mean() < 0.02
 
 
 @pytest.mark.parametrize("way", ["a.mesh", "a.vtu", "a.msh", "b.mesh"])

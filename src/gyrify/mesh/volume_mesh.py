@@ -89,18 +89,18 @@ def _depth(
 ) -> FloatArray:
     """(n_points,) position across the layers; see `gyrify.mesh.mesh.Mesh`.
 
-    By the distance below the outer surface, or between it and the interface of labelled cells, where the
-    cortex has a thickness of its own.
+    By the distance below the outer surface in units of T, without end; or between it and the interface of
+    labelled cells, where the cortex has a thickness of its own.
     """
-    T, white = body.cortical_thickness, body.wall[0]
+    T = body.cortical_thickness
     if interface is None:
-        return np.where(below < T, 2.0 - below / T, np.maximum(1.0 - (below - T) / white, 0.0))
+        return 2.0 - below / T
     inner = distances_to(points, points[interface])
     inner[np.unique(interface)] = 0.0
     in_grey = np.zeros(points.shape[0], dtype=bool)
     in_grey[cells[is_grey]] = True
     share = below / np.where(below + inner > 0.0, below + inner, 1.0)
-    return np.where(in_grey & (inner > 0.0), 2.0 - share, np.maximum(1.0 - inner / white, 0.0))
+    return np.where(in_grey & (inner > 0.0), 2.0 - share, 1.0 - inner / T)
 
 
 def _eighths(points: FloatArray, cells: IntArray) -> tuple[FloatArray, IntArray]:

@@ -42,8 +42,11 @@ class VolumeBody:
 
     @property
     def wall(self) -> tuple[float, float]:
-        """Thickness of white matter, that of the ball of equal volume, and of the cortex [mm]."""
-        return self.mean_radius - self.cortical_thickness, self.cortical_thickness
+        """Lengths of a depth of 1 below the interface and above it, both T [mm].
+
+        The depth falls by the distance alone, so that the mean of a cell that lies on both sides is right.
+        """
+        return self.cortical_thickness, self.cortical_thickness
 
     @property
     def narrowest_wall(self) -> float:
