@@ -215,7 +215,8 @@ def draw(found: list[Folded], mesh: Any, scale: float) -> None:
             axes[row, column].set_aspect("equal")
             axes[row, column].autoscale_view()
             axes[row, column].set_axis_off()
-            axes[row, column].set(xlim=(-1.25 * scale, 1.25 * scale), ylim=(-1.05 * scale, 1.05 * scale))
+            axes[row, column].set(xlim=(-1.5 * scale, 1.5 * scale), ylim=(-1.15 * scale, 1.15 * scale))
+            axes[row, column].text(-1.45 * scale, 1.02 * scale, view, fontsize=8)
         area = face_areas(body.corners).sum() / ConvexHull(points[mesh.contour]).area
         axes[0, column].set_title(f"{run.name}\narea over hull {area:.2f}", fontsize=10)
     figure.savefig(FIGURE, dpi=130)

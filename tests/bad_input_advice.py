@@ -59,12 +59,29 @@ MEND = Way("Correct or complete that line", '[growth]\nratio = "1/1.36"')
 
 _SURFACE = '[geometry]\nshape = "surface"\nfile = "{}"\ncortical_thickness = 1\n[mesh]\nrefine = 2'
 
+_VOLUME = '[geometry]\nshape = "volume"\nfile = "brain.mesh"\ncortical_thickness = 5'
+
 ADVICE: dict[str, list[Way]] = {
     "no-file": [Way("surface.stl", _SURFACE.format("surface.stl"), first=bad_runs.write_tetrahedron)],
     "lost-file": [
         Way("Give the path of a surface", _SURFACE.format("brain.stl"), first=bad_runs.write_tetrahedron)
     ],
     "open-surface": [Way("Close its holes", _SURFACE.format("brain.off"), first=bad_runs.write_tetrahedron)],
+    "broken-volume": [Way("Save it again", _VOLUME, first=bad_runs.write_volume)],
+    "labels": [
+        Way(
+            "Name each label of the file once",
+            _VOLUME + "\nlabels = {grey = [1], white = [2]}",
+            first=bad_runs.write_volume,
+        )
+    ],
+    "plane": [
+        Way(
+            "Give a point and a normal that points out of the body",
+            _VOLUME + '\n[boundary]\nclamp = "plane"\nplane = {point = [0, 14, 0]}',
+            first=bad_runs.write_volume,
+        )
+    ],
     "negative": default("The default is 3.6", "[growth]\nratio = 3.6"),
     "zero": default("The default is 4069.0", "[geometry]\narea = 4069.0"),
     "absurd": default("The default is 9210.87", "[material]\nyoung_modulus = 9210.87"),

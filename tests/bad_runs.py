@@ -9,6 +9,7 @@ import os
 import sqlite3
 import tempfile
 from collections.abc import Iterator
+from itertools import permutations
 from pathlib import Path
 
 from filelock import FileLock
@@ -157,7 +158,16 @@ def write_tetrahedron(folder: Path, n_faces: int = 4) -> None:
         (folder / name).write_text("\n".join([*text, "endsolid"]) + "\n")
 
 
-def write_cell(folder: Path, share: float = 1.0) -> None:
-    """Write a tetrahedron with edges of 28 mm as brain.mesh, or a part of that file."""
-    text = "4\n10 10 10\n10 -10 -10\n-10 10 -10\n-10 -10 10\n1\n1 1 2 3 4\n"
+def write_volume(folder: Path, share: float = 1.0) -> None:
+    """Write a cube of 28 mm as brain.mesh, of 27 cubes of six tetrahedra, the middle one labelled 2."""
+    places = [(i, j, k) for i in range(4) for j in range(4) for k in range(4)]
+    lines = ["64", *(" ".join(f"{28 * x / 3 - 14:.6f}" for x in place) for place in places), "162"]
+    for low in ((i, j, k) for i in range(3) for j in range(3) for k in range(3)):
+        for axes in permutations(range(3)):
+            path = [list(low)]
+            for axis in axes:
+                path.append([x + (n == axis) for n, x in enumerate(path[-1])])
+            corners = " ".join(str(places.index(tuple(place)) + 1) for place in path)
+            lines.append(f"{2 if low == (1, 1, 1) else 1} {corners}")
+    text = "\n".join(lines) + "\n"
     (folder / "brain.mesh").write_text(text[: int(share * len(text))])
