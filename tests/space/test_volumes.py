@@ -14,7 +14,7 @@ from written_volumes import ball, config, plain
 
 from gyrify.config import Config
 from gyrify.mesh import GREY, WHITE
-from gyrify.metrics.tetrahedra import boundary_faces, signed_volumes
+from gyrify.metrics.tetrahedra import faces_of_one_cell, signed_volumes
 from gyrify.model import kept_mesh
 from gyrify.model.body import cortical_share
 from gyrify.model.meshing import build_mesh
@@ -105,7 +105,7 @@ def test_tissue_is_told_by_labels(way: str, tmp_path: Path) -> None:
     middle = np.linalg.norm(mesh.cell_points.mean(axis=1), axis=1)
     assert mesh.n_cells == (labels != 5).sum()
     assert np.array_equal(mesh.region == GREY, middle > 12.0)
-    boundary = boundary_faces(mesh.cells)
+    boundary = faces_of_one_cell(mesh.cells)
     assert set(boundary.ravel()) == set(mesh.contour) | set(mesh.clamped)
     assert np.linalg.norm(mesh.points[mesh.clamped], axis=1).max() < 10.0
     assert mesh.clamped.size > 0
@@ -145,7 +145,7 @@ def test_refinement_keeps_the_body(tmp_path: Path) -> None:
     grey = [signed_volumes(m.cell_points)[m.region == GREY].sum() for m in (coarse, fine)]
     assert grey[1] == pytest.approx(grey[0], rel=1e-12)
     # every face within belongs to two cells
-    assert boundary_faces(fine.cells).shape[0] == fine.faces.shape[0]
+    assert faces_of_one_cell(fine.cells).shape[0] == fine.faces.shape[0]
 
 
 def test_a_ball_of_tetrahedra_grows_as_exact_theory_says(tmp_path: Path) -> None:

@@ -7,15 +7,15 @@ from typing import Final
 import numpy as np
 
 from gyrify.mesh.mesh import IntArray, Mesh
+from gyrify.metrics.tetrahedra import FACES
 
-# Corners of the sides of a tetrahedron, counter-clockwise seen from outside; those of a quadratic one are
-# four triangles each, with the nodes between the corners in the order of VTK.
-_SIDES: Final = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
+# Sides of a quadratic tetrahedron are four triangles each, with the nodes between the corners in the order
+# of VTK.
 _BETWEEN: Final = np.array([[0, 4, 6, 7], [4, 1, 5, 8], [6, 5, 2, 9], [7, 8, 9, 3]])
 _QUARTERED: Final = np.array(
     [
         [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
-        for a, b, c in _SIDES.tolist()
+        for a, b, c in FACES.tolist()
         for ab, bc, ca in [(int(_BETWEEN[a, b]), int(_BETWEEN[b, c]), int(_BETWEEN[c, a]))]
     ]
 ).reshape(-1, 3)
@@ -43,7 +43,7 @@ def boundary_faces(mesh: Mesh) -> tuple[IntArray, IntArray]:
     cells : (n,) int array
         The cell of each.
     """
-    sides = _SIDES if mesh.cells.shape[1] == 4 else _QUARTERED
+    sides = FACES if mesh.cells.shape[1] == 4 else _QUARTERED
     faces = mesh.cells[:, sides].reshape(-1, 3)
     keys = _key(mesh, faces)
     _, first, counts = np.unique(keys, return_index=True, return_counts=True)

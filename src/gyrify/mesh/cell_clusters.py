@@ -5,9 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gyrify.mesh.mesh import FloatArray, IntArray
-
-_EDGES = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
-_FACES = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])
+from gyrify.metrics.tetrahedra import EDGES, faces_by_cells
 
 
 def edge_clusters(points: FloatArray, cells: IntArray) -> IntArray:
@@ -28,7 +26,7 @@ def edge_clusters(points: FloatArray, cells: IntArray) -> IntArray:
         Numbers from 0 without gaps.
     """
     n = cells.shape[0]
-    sides = np.sort(cells[:, _EDGES].reshape(-1, 2), axis=1)
+    sides = np.sort(cells[:, EDGES].reshape(-1, 2), axis=1)
     edges, number = np.unique(sides, axis=0, return_inverse=True)
     number = number.ravel()
     order = np.argsort(number, kind="stable")
@@ -71,12 +69,9 @@ def _completed(cells: IntArray, cluster: IntArray, sizes: list[int]) -> IntArray
 
 def _neighbours(cells: IntArray) -> IntArray:
     """(n_cells, 4) cell behind each face; -1 where there is none."""
-    faces = np.sort(cells[:, _FACES].reshape(-1, 3), axis=1)
-    _, number, counts = np.unique(faces, axis=0, return_inverse=True, return_counts=True)
-    order = np.argsort(number.ravel(), kind="stable")
-    first = np.cumsum(counts) - counts
-    both = np.flatnonzero(counts == 2)
-    a, b = order[first[both]], order[first[both] + 1]
+    faces, order, first = faces_by_cells(cells)
+    both = first[:-1][np.diff(first) == 2]
+    a, b = order[both], order[both + 1]
     found = np.full(faces.shape[0], -1, dtype=np.int64)
     found[a], found[b] = b // 4, a // 4
     return found.reshape(-1, 4)

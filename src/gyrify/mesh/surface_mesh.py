@@ -70,7 +70,7 @@ def surface_mesh(body: SurfaceBody, layers: SurfaceLayers) -> Mesh:
     for _ in range(layers.refine + layers.refine_cortex):
         body = _halved(body)
     n_layers = layers.n_cortex_layers * 2 ** (layers.refine + layers.refine_cortex)
-    _require_no_crossing(body)
+    require_no_crossing(body.points, body.triangles, "The surface")
     T, triangles, n = body.cortical_thickness, body.triangles, body.points.shape[0]
     if body.interface is None:
         cortex = offset_surface(body.points, triangles, T, n_layers)
@@ -155,12 +155,13 @@ def _quartered(points: FloatArray, triangles: IntArray) -> tuple[FloatArray, Int
     return np.concatenate([points, points[edges].mean(axis=1)]), finer
 
 
-def _require_no_crossing(body: SurfaceBody) -> None:
-    edges, hit = crossings(body.points, body.triangles)
+def require_no_crossing(points: FloatArray, triangles: IntArray, name: str) -> None:
+    """Refuse a surface that crosses itself, with a place."""
+    edges, hit = crossings(points, triangles)
     if hit.size:
         raise MeshError(
-            f"The surface crosses itself: {hit.size} edges pass through triangles, first at "
-            f"{place(body.points[edges[0]].mean(axis=0))}.",
+            f"{name} crosses itself: {hit.size} edges pass through triangles, first at "
+            f"{place(points[edges[0]].mean(axis=0))}.",
             "Repair it there in the program that it comes from.",
         )
 

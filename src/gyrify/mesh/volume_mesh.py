@@ -15,11 +15,11 @@ from gyrify.mesh.mesh import GREY, WHITE, FloatArray, IntArray, Mesh
 from gyrify.mesh.offset_surface import angle_normals
 from gyrify.mesh.quality import LOWEST_QUALITY, tetrahedron_quality
 from gyrify.mesh.shapes.volume_body import VolumeBody
+from gyrify.mesh.surface_mesh import require_no_crossing
 from gyrify.mesh.volume_sides import sides_of
-from gyrify.metrics.surface_pairs import crossings, distances_to
-from gyrify.metrics.tetrahedra import faces_between, signed_volumes
+from gyrify.metrics.surface_pairs import distances_to
+from gyrify.metrics.tetrahedra import EDGES, faces_between, signed_volumes
 
-_EDGES: Final = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
 # The eight parts of a tetrahedron with corners 0 to 3 and middles 4 to 9 of its edges: four at the corners,
 # and four about one of the three diagonals of the octahedron between them.
 _AT_CORNERS: Final = np.array([[0, 4, 5, 6], [4, 1, 7, 8], [5, 7, 2, 9], [6, 8, 9, 3]])
@@ -57,7 +57,7 @@ def volume_mesh(body: VolumeBody, refine: int = 0) -> Mesh:
         grey = None if grey is None else np.tile(grey, 8)
     sides = sides_of(points, cells, body.plane)
     points, faces, contour = sides.points, sides.outer, np.unique(sides.outer)
-    _require_no_crossing(points, faces)
+    require_no_crossing(points, faces, "The outside of the volume")
     T, below = body.cortical_thickness, distances_to(points, points[faces])
     below[contour] = 0.0
     is_grey = below[cells].mean(axis=1) < T if grey is None else grey
@@ -105,7 +105,7 @@ def _depth(
 
 def _eighths(points: FloatArray, cells: IntArray) -> tuple[FloatArray, IntArray]:
     """Each tetrahedron cut into eight; the octahedron within along its shortest diagonal (Bey 1995)."""
-    sides = np.sort(cells[:, _EDGES].reshape(-1, 2), axis=1)
+    sides = np.sort(cells[:, EDGES].reshape(-1, 2), axis=1)
     edges, number = np.unique(sides, axis=0, return_inverse=True)
     finer = np.concatenate([points, points[edges].mean(axis=1)])
     ten = np.concatenate([cells, points.shape[0] + number.reshape(-1, 6)], axis=1)
@@ -121,21 +121,11 @@ def _eighths(points: FloatArray, cells: IntArray) -> tuple[FloatArray, IntArray]
     return finer, every
 
 
-def _require_no_crossing(points: FloatArray, faces: IntArray) -> None:
-    edges, hit = crossings(points, faces)
-    if hit.size:
-        raise MeshError(
-            f"The outside of the volume crosses itself: {hit.size} edges pass through triangles, first at "
-            f"{place(points[edges[0]].mean(axis=0))}.",
-            "Repair it there in the program that it comes from.",
-        )
-
-
 def _interface(cells: IntArray, is_grey: NDArray[np.bool_], T: float, points: FloatArray) -> IntArray:
     faces = faces_between(cells, ~is_grey)
     if faces.size:
         return faces
-    edges = points[cells[:, _EDGES]]
+    edges = points[cells[:, EDGES]]
     mean = float(np.linalg.norm(edges[:, :, 1] - edges[:, :, 0], axis=2).mean())
     tissue = "white" if is_grey.all() else "grey"
     raise MeshError(

@@ -14,7 +14,7 @@ from gyrify.base.places import place
 from gyrify.errors import MeshError
 from gyrify.mesh.mesh import FloatArray, IntArray
 from gyrify.metrics.surface import enclosed_volume, face_vectors
-from gyrify.metrics.tetrahedra import boundary_faces
+from gyrify.metrics.tetrahedra import faces_of_one_cell
 
 # Over the mean edge of the boundary: points this near to the plane of symmetry are moved into it ...
 _IN_PLANE: Final = 1e-3
@@ -69,7 +69,7 @@ def sides_of(points: FloatArray, cells: IntArray, plane: tuple[FloatArray, Float
     MeshError
         If the body lies on both sides of the plane, or has no flat side there.
     """
-    faces, notes = boundary_faces(cells), tuple[str, ...]()
+    faces, notes = faces_of_one_cell(cells), tuple[str, ...]()
     in_plane = np.zeros(points.shape[0], dtype=bool)
     origin = points.mean(axis=0)
     if plane is not None:

@@ -10,6 +10,8 @@ from gyrify.metrics.surface import FloatArray, IntArray
 
 # Corners of the face opposite each corner, counter-clockwise seen from outside of a positive cell.
 FACES: Final = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
+# Ends of its edges.
+EDGES: Final = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
 
 
 def signed_volumes(corners: FloatArray) -> FloatArray:
@@ -41,7 +43,7 @@ def faces_by_cells(cells: IntArray) -> tuple[IntArray, IntArray, IntArray]:
     return faces, order, first
 
 
-def boundary_faces(cells: IntArray) -> IntArray:
+def faces_of_one_cell(cells: IntArray) -> IntArray:
     """(n, 3) faces that belong to one cell only, outwards counter-clockwise, in the order of the cells."""
     faces, order, first = faces_by_cells(cells)
     return np.asarray(faces[np.sort(order[first[:-1][np.diff(first) == 1]])])

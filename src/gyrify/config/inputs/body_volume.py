@@ -23,7 +23,7 @@ from gyrify.config.inputs.named_files import content
 from gyrify.config.inputs.volume_readers import FloatArray, IntArray, read_tetrahedra
 from gyrify.config.small_tables import Labels
 from gyrify.errors import ConfigError, MeshError
-from gyrify.metrics.tetrahedra import boundary_faces, faces_by_cells, signed_volumes
+from gyrify.metrics.tetrahedra import faces_by_cells, faces_of_one_cell, signed_volumes
 
 # Points this much nearer to each other than the body is long are one; a cell of less volume is flat.
 _SAME: Final = 1e-7
@@ -61,7 +61,7 @@ class TetrahedronVolume:
     @cached_property
     def _sides(self) -> tuple[IntArray, IntArray]:
         """Triangles of the outer boundary, and of holes, outwards as seen from the cells."""
-        faces = boundary_faces(self.cells)
+        faces = faces_of_one_cell(self.cells)
         require_two_at_each_edge(self.points, faces, f"The outside of {self.name}")
         part = topology.parts_of(faces)
         is_hole = (volumes_of_parts(self.points, faces, part) < 0.0)[part]

@@ -19,7 +19,7 @@ def surface_notes(config: Config) -> list[str]:
 
     found = []
     if geometry.shape == "volume" and geometry.volume.notes:
-        found.append(f"The volume of geometry.file): {'; '.join(geometry.volume.notes)}.")
+        found.append(f"The volume of geometry.file: {'; '.join(geometry.volume.notes)}.")
     for key, surface in (("file", geometry.surface), ("hole_file", geometry.hole_surface)):
         if surface is not None and surface.notes:
             found.append(
